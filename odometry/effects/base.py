@@ -22,10 +22,8 @@ class EffectParameter:
     Attributes
     ----------
     name, unit : str
-    low, high : float
-        Bounds within which it is searched.
-    start : float
-        Where a search begins.
+    low, high, start : float
+        Bounds within which it is searched, and where a search begins.
     scale : float
         A small change of it that matters: the measure of steps.
     absent : float or None
@@ -49,19 +47,15 @@ class Effect(ABC):
 
     Attributes
     ----------
-    name, form : str
-        What it is, and in which equations.
-    in_words : str
-        The name that a roboticist would use.
+    name, form, in_words : str
+        What it is, in which equations, and the name that a roboticist would use.
     acts_on : str
         "commands", "motion" or "measurement".
     equation, source : str
     looks_like : str
         How a person would notice it in a recording.
-    remedy : str
-        What to do about it.
-    needs : str
-        Which data it needs.
+    remedy, needs : str
+        What to do about it, and which data it needs.
     alike : Mapping of name to str
         Effects that it may be mistaken for, and what distinguishes them.
     includes : Mapping of name to str
@@ -191,6 +185,11 @@ class MotionEffect(Effect):
     """Acts on the body twist."""
 
     acts_on = "motion"
+
+    @property
+    def answers_to(self) -> str:
+        """What changes what it adds, beside values and inputs: "twist" and base, "base" or ""."""
+        return "twist"
 
     @abstractmethod
     def twist(

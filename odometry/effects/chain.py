@@ -45,21 +45,38 @@ class Chain:
         same_base = np.array_equal(base.values, self.base.values)
         return not same_base or self._first_changed(effects) < len(self.effects)
 
-    def at(self, base: Base, effects: Sequence[Added]) -> FloatArray:
-        """The twist (N, 3) at other values of the base and the same effects."""
+    def at_all(self, others: Sequence[tuple[Base, Sequence[Added]]]) -> FloatArray:
+        """The twists (C, N, 3) at other values of the base and the same effects."""
+        made = np.moveaxis(np.empty((3, len(others), len(self.twist))), 0, -1)
+        bases = [
+            place
+            for place, (_, effects) in enumerate(others)
+            if self._first_changed(effects) == len(self.effects)
+        ]
+        if bases:
+            twists = self._of_bases([others[place][0] for place in bases])
+            for place, twist in zip(bases, twists, strict=True):
+                made[place] = self._from_base(others[place][0], twist)
+        for place, (base, effects) in enumerate(others):
+            if place not in bases:
+                made[place] = self._at(base, effects)
+        return made
+
+    def _at(self, base: Base, effects: Sequence[Added]) -> FloatArray:
         first = self._first_changed(effects)
-        if first < len(self.effects) and isinstance(effects[first].effect, CommandEffect):
+        on_commands = isinstance(effects[first].effect, CommandEffect)
+        if on_commands or not np.array_equal(base.values, self.base.values):
             return corrected_twist(base, effects, self.recorded)
-        if not np.array_equal(base.values, self.base.values):
-            return self._from_base(base, effects)
         twist = self._twists[first]
         for place, added in enumerate(effects[first:], first):
             columns = self._columns_of(added, place, first)
-            if columns is None:
+            if columns is None and place > first and self._adds_the_same(added, place):
+                twist = twist + self._added(place)
+            elif columns is None:
                 twist = self._with(added, twist, self.base)
             else:
                 moved = np.tensordot(added.values - self.effects[place].values, columns, axes=1)
-                twist = twist + (self._twists[place + 1] - self._twists[place]) + moved
+                twist = twist + self._added(place) + moved
         return twist
 
     def _first_changed(self, effects: Sequence[Added]) -> int:
@@ -73,12 +90,31 @@ class Chain:
         on_commands = [p for p in changed if isinstance(effects[p].effect, CommandEffect)]
         return min(on_commands or changed, default=len(self.effects))
 
-    def _from_base(self, base: Base, effects: Sequence[Added]) -> FloatArray:
-        """At other values of the base, and the same true speeds."""
-        twist = base.model.twist(base.values, self.inputs)
-        for added in effects:
-            twist = self._with(added, twist, base)
+    def _of_bases(self, bases: Sequence[Base]) -> Sequence[FloatArray]:
+        """Twists (N, 3) of each base, and the same true speeds."""
+        if isinstance(self.base.model, IcrByTerrain):
+            return [base.model.twist(base.values, self.inputs) for base in bases]
+        values = np.stack([base.values for base in bases])
+        return list(self.base.model.twist(values[:, None], self.inputs))
+
+    def _from_base(self, base: Base, twist: FloatArray) -> FloatArray:
+        """The twist (N, 3) under all effects of that of another base (N, 3)."""
+        for place, added in enumerate(self.effects):
+            if isinstance(added.effect, MotionEffect) and not added.effect.answers_to:
+                twist = twist + self._added(place)
+            else:
+                twist = self._with(added, twist, base)
         return twist
+
+    def _adds_the_same(self, added: Added, place: int) -> bool:
+        """Whether an effect adds what it did, at the same base, to another twist."""
+        effect = added.effect
+        same = np.array_equal(added.values, self.effects[place].values)
+        return same and isinstance(effect, MotionEffect) and effect.answers_to != "twist"
+
+    def _added(self, place: int) -> FloatArray:
+        """What an effect adds to the twist (N, 3)."""
+        return self._twists[place + 1] - self._twists[place]
 
     def _with(self, added: Added, twist: FloatArray, base: Base) -> FloatArray:
         if not isinstance(added.effect, MotionEffect):

@@ -51,6 +51,11 @@ class History(Residual):
             for name, number in self.terms
         )
 
+    @property
+    def answers_to(self) -> str:
+        """See `MotionEffect.answers_to`: treads go through the base."""
+        return "base"
+
     def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
         """See `Effect.lacks`."""
         return "stamps" if inputs.time_s is None else ""

@@ -123,6 +123,13 @@ class Residual(MotionEffect):
         """
         return np.asarray(twist + np.tensordot(values, self.columns(twist, inputs, base), axes=1))
 
+    @property
+    def answers_to(self) -> str:
+        """See `MotionEffect.answers_to`; treads go through the base."""
+        if self.variable in SIMULATED or self.by not in ("", "speed"):
+            return "twist"
+        return "base" if any(component in TREADS for component, _ in self.terms) else ""
+
     def columns(self, twist: FloatArray, inputs: Inputs, base: Base) -> FloatArray:
         """What one of each term adds to the twist (P, N, 3).
 
@@ -139,17 +146,19 @@ class Residual(MotionEffect):
             )
         bases = bases_of_treads(variable, self.knots)
         directions = {name: self._direction(name, twist, inputs, base) for name, _ in self.terms}
-        made = np.empty((len(self.terms), *twist.shape))
+        made = np.zeros((3, len(self.terms), len(twist)))
         for place, (component, number) in enumerate(self.terms):
             basis = bases[int(component == TREADS[1])][:, number]
-            np.multiply(basis[:, None], directions[component], out=made[place])
-        return made
+            for part, direction in enumerate(directions[component].T):
+                if component not in COMPONENTS or component == COMPONENTS[part]:
+                    np.multiply(basis, direction, out=made[part, place])
+        return np.moveaxis(made, 0, -1)
 
     def _direction(
         self, component: str, twist: FloatArray, inputs: Inputs, base: Base
     ) -> FloatArray:
         """What one more of a component adds to the twist (N, 3)."""
-        direction = np.zeros_like(twist)
+        direction = np.zeros(twist.shape[::-1]).T
         if component in TREADS:
             tread = TREADS.index(component)
             direction += base.model.speed_jacobian(base.values, inputs)[..., tread]

@@ -44,7 +44,9 @@ def variable_of(name: str, inputs: Inputs, twist: FloatArray | None) -> FloatArr
 def basis_of(variable: FloatArray, knots: tuple[float, ...]) -> FloatArray:
     """Basis functions (N, B): hats on the knots, or without any cosines, sines and one."""
     if knots:
-        return np.stack([np.interp(variable, knots, hat) for hat in np.eye(len(knots))], axis=-1)
+        numbers = np.arange(len(knots), dtype=np.float64)
+        between = np.interp(variable, knots, numbers)
+        return np.maximum(1.0 - np.abs(between - numbers[:, None]), 0.0).T
     waves = [wave(k * variable) for k in range(1, HARMONICS + 1) for wave in (np.cos, np.sin)]
     return np.stack([*waves, np.ones_like(variable)], axis=-1)
 

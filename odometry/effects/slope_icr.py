@@ -26,6 +26,7 @@ class SlopeByIcr(MotionEffect):
     name = "slope_sliding"
     in_words = "sliding downhill in turns"
     form = "icr_slope"
+    answers_to = "base"
     equation = "ICRs shifted by lambda_1 and lambda_2 times roll and pitch, less v_max - |v|"
     constant_names = ("half_width", "half_length")
     source = "Martinez 2024 eq. 1-11"

@@ -28,6 +28,15 @@ def exp(displacement: FloatArray) -> FloatArray:
     return _end(along, across, angle, chord * np.cos(half), chord**2 * half)
 
 
+def quick_exp(displacement: FloatArray) -> FloatArray:
+    """`exp` (..., 3), to some 1e-16, for many displacements (..., 3) at once."""
+    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    half = angle / 2
+    half_sine, half_cosine = sine_and_cosine(half)
+    chord = _chord(half, half_sine)
+    return _end(along, across, angle, chord * half_cosine, chord * half_sine)
+
+
 def log(pose: FloatArray) -> FloatArray:
     """The constant displacement whose `exp` is a pose.
 
@@ -93,8 +102,7 @@ def linearised_exp(displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
     along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
     half = angle / 2
     half_sine, half_cosine = sine_and_cosine(half)
-    straight = np.abs(half) < NO_ANGLE
-    chord = (half_sine + straight) / (half + straight)  # sin(half)/half, 1 at 0
+    chord = _chord(half, half_sine)
     sine_ratio, cosine_ratio = chord * half_cosine, chord * half_sine
     sine = 2 * half_sine * half_cosine
     cosine = 1.0 - angle * cosine_ratio
@@ -110,6 +118,12 @@ def linearised_exp(displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
     jacobian[2, 2] = 1.0
     end = _end(along, across, angle, sine_ratio, cosine_ratio)
     return end, np.moveaxis(jacobian, (0, 1), (-2, -1))
+
+
+def _chord(half: FloatArray, half_sine: FloatArray) -> FloatArray:
+    """Chord of an arc over its length, sin(half) / half: 1 without a turn."""
+    straight = np.abs(half) < NO_ANGLE
+    return np.asarray((half_sine + straight) / (half + straight))
 
 
 def _end(

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.geometry.angles import sine_and_cosine
 
 
 class Tilt(NamedTuple):
@@ -69,7 +70,7 @@ def level_step_jacobian(steps: FloatArray, tilt: Tilt) -> FloatArray:
 
 def _turned_axis(angle: FloatArray, tilt: Tilt) -> tuple[FloatArray, FloatArray]:
     """Horizontal part of the x axis after a turn about the body's z."""
-    sine, cosine = np.sin(angle), np.cos(angle)
+    sine, cosine = sine_and_cosine(angle)
     x = tilt.cos_pitch * cosine + tilt.sin_pitch * tilt.sin_roll * sine
     return x, tilt.cos_roll * sine
 

@@ -12,6 +12,7 @@ from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
+from odometry.windows.between import between
 from odometry.windows.config import WindowConfig
 from odometry.windows.record import FEW_POSES, Record, record_of, straddling, words
 
@@ -93,7 +94,7 @@ class DenseWindows:
     @cached_property
     def measured(self) -> FloatArray:
         """Measured motion (K, n, 3) in the frame of each window's first pose, with whole turns."""
-        return motion_from_first(self.poses[self.windows])
+        return motion_from_first(self.poses, self.windows)
 
     @cached_property
     def reported_turns(self) -> FloatArray | None:
@@ -121,14 +122,18 @@ class DenseWindows:
         return replace(self, windows=self.windows[chosen])
 
 
-def motion_from_first(poses: FloatArray) -> FloatArray:
-    """Motion (K, n, 3) of n + 1 poses (K, n + 1, 3) seen from the first; yaw is not wrapped."""
-    x, y, yaw = np.moveaxis(poses[:, 1:] - poses[:, :1], -1, 0)
-    cosine, sine = np.cos(poses[:, :1, 2]), np.sin(poses[:, :1, 2])
+def motion_from_first(poses: FloatArray, windows: IntArray) -> FloatArray:
+    """Motion (K, n, 3) of poses (M, 3) seen from the first of each window (K, n + 1).
+
+    Yaw is not wrapped.
+    """
+    x, y, yaw = (np.ascontiguousarray(column).take(windows) for column in poses.T)
+    cosine, sine = np.cos(yaw[:, :1]), np.sin(yaw[:, :1])
+    x, y = x[:, 1:] - x[:, :1], y[:, 1:] - y[:, :1]
     motion = np.empty((*x.shape, 3))
     motion[..., 0] = cosine * x + sine * y
     motion[..., 1] = cosine * y - sine * x
-    motion[..., 2] = yaw
+    motion[..., 2] = yaw[:, 1:] - yaw[:, :1]
     return motion
 
 
@@ -228,7 +233,7 @@ def thinned(windows: DenseWindows, most: int) -> DenseWindows:
 
 def poses_at(path: FloatArray, windows: DenseWindows, seen_s: FloatArray) -> FloatArray:
     """Poses (M, 3) of a path (N, 3) over a run's samples at run times (M,)."""
-    return np.stack([np.interp(seen_s, windows.time_s, column) for column in path.T], axis=-1)
+    return between(windows.time_s, seen_s).of(path.T).T
 
 
 def off_measured(poses: FloatArray, windows: DenseWindows) -> FloatArray:
@@ -236,4 +241,4 @@ def off_measured(poses: FloatArray, windows: DenseWindows) -> FloatArray:
 
     Yaw of the poses must not be wrapped: turns are compared with all whole turns in them.
     """
-    return np.asarray(windows.measured - motion_from_first(poses[windows.windows]))
+    return np.asarray(windows.measured - motion_from_first(poses, windows.windows))

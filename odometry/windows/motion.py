@@ -51,9 +51,20 @@ def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> Float
     inputs : Inputs
         Of stack (N,); its roll and pitch count.
     """
-    steps = _level(se2.exp(twists * steps_s[:, None]), inputs.tilt)
-    yaw = _summed(steps[:, 2])[:-1]
-    return _laid(steps, yaw, np.sin(yaw), np.cos(yaw)).poses
+    return _laid(_level(se2.quick_exp(twists * steps_s[:, None]), inputs.tilt)).poses
+
+
+def linearised_level_path(
+    twists: FloatArray, steps_s: FloatArray, inputs: Inputs
+) -> tuple[FloatArray, FloatArray]:
+    """`level_path` (N, 3), and what twists (N, 3) move of it (7, N).
+
+    The rows are x (3) and y (3) of all later samples, turned about the origin, and yaw (by the
+    turn alone).
+    """
+    arcs, by_arc = se2.linearised_exp(twists * steps_s[:, None])
+    path = _laid(_level(arcs, inputs.tilt))
+    return path.poses, steps_s * _by_displacement(path, arcs, by_arc, inputs.tilt)
 
 
 def linearised_window_motion(
@@ -69,9 +80,7 @@ def linearised_window_motion(
     derivative = np.empty((len(windows), *by_parameters.shape[1:]))
     for block in blocks(windows):
         arcs, by_arc = se2.linearised_exp(twists[block.samples] * block.steps_s[:, None])
-        steps = _level(arcs, block.tilt)
-        yaw = _summed(steps[:, 2])[:-1]
-        path = _laid(steps, yaw, *sine_and_cosine(yaw))
+        path = _laid(_level(arcs, block.tilt))
         motion[block.windows] = _between(path.poses, block.first, block.last)
         by_twist = block.steps_s * _by_displacement(path, arcs, by_arc, block.tilt)
         for parameter in range(by_parameters.shape[-1]):
@@ -98,9 +107,11 @@ def _level(arcs: FloatArray, tilt: Tilt | None) -> FloatArray:
     return arcs if tilt is None else level_steps(arcs, tilt)
 
 
-def _laid(steps: FloatArray, yaw: FloatArray, sine: FloatArray, cosine: FloatArray) -> _Path:
-    """The path of level steps (N, 3), with the yaw (N,) before each."""
-    along, across, _ = steps.T
+def _laid(steps: FloatArray) -> _Path:
+    """The path of level steps (N, 3)."""
+    along, across, turns = steps.T
+    yaw = _summed(turns)[:-1]
+    sine, cosine = sine_and_cosine(yaw)
     x = _summed(cosine * along - sine * across)
     y = _summed(sine * along + cosine * across)
     return _Path(np.stack([x[:-1], y[:-1], yaw]).T, np.stack([x[1:], y[1:]]), sine, cosine)

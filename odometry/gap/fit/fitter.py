@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
@@ -27,25 +27,30 @@ def held_out(hypothesis: Hypothesis, solved: Solved) -> FloatArray:
     measured = hypothesis.measured
     fold_of_row = measured.folds[measured.window_of_row]
     judged = np.zeros(len(measured.folds))
+    normal = solved.jacobian.T @ solved.jacobian
     for fold in np.unique(measured.folds):
-        out = np.zeros(len(solved.rows), dtype=np.bool_)
-        out[: len(fold_of_row)] = fold_of_row == fold
-        rows = _without(hypothesis, solved, out)
+        rows = _without(hypothesis, solved, normal, np.flatnonzero(fold_of_row == fold))
         inside = measured.folds == fold
         judged[inside] = measured.by_window(rows[: len(fold_of_row)])[inside]
     return judged
 
 
-def _without(hypothesis: Hypothesis, solved: Solved, out: BoolArray) -> FloatArray:
-    """All rows by a fit to those that are not `out`: a damped step that makes them fit."""
-    own, others = solved.jacobian[out], solved.jacobian[~out]
-    normal, gradient = others.T @ others, own.T @ solved.rows[out]
-    cost = float(solved.rows[~out] @ solved.rows[~out])
+def _without(
+    hypothesis: Hypothesis, solved: Solved, of_all: FloatArray, out: IntArray
+) -> FloatArray:
+    """All rows by a fit to those that are not `out`: a damped step that makes them fit.
+
+    `of_all` (V, V) is the normal matrix of all rows.
+    """
+    own, own_rows = solved.jacobian[out], solved.rows[out]
+    normal, gradient = of_all - own.T @ own, own.T @ own_rows
+    cost = solved.cost - float(own_rows @ own_rows)
     for damping in DAMPINGS:
         damped = normal + damping * np.diag(np.diag(normal)) + RIDGE * np.eye(len(normal))
         step = np.linalg.solve(damped, gradient)
         rows = hypothesis.rows(np.clip(solved.values + step, *hypothesis.bounds))
-        if rows[~out] @ rows[~out] <= cost + ROUNDING * max(1.0, float(cost)):
+        others = float(rows @ rows - rows[out] @ rows[out])
+        if others <= cost + ROUNDING * max(1.0, cost):
             return rows
     return solved.rows
 

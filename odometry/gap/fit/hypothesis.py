@@ -15,8 +15,8 @@ from odometry.effects.base import Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.prepare.calibration import Calibration
+from odometry.gap.prepare.derivative import whitened_derivative
 from odometry.gap.prepare.measured import Measured
-from odometry.gap.prepare.responses import whitened_derivative
 from odometry.gap.solve import (
     Bounds,
     Found,
@@ -137,7 +137,7 @@ class Hypothesis:
         of_windows = whitened_derivative(
             self.split, values, steps, measured.scenes, measured.whiteners
         )
-        jacobian = np.zeros((len(rows), len(values)))
+        jacobian = np.zeros((len(values), len(rows))).T
         jacobian[: len(of_windows)] = of_windows
         jacobian[len(of_windows) :, steps != 0] = self._known[:, steps != 0]
         return jacobian

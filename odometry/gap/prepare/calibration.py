@@ -9,8 +9,8 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.errors import GapError
 from odometry.gap.config import GapConfig
+from odometry.gap.prepare.derivative import whitened_derivative
 from odometry.gap.prepare.pieces import numbered_pieces, pieces
-from odometry.gap.prepare.responses import whitened_derivative
 from odometry.gap.prepare.simulate import all_residuals, whitened_residuals
 from odometry.gap.prepare.uncertain_base import Uncertain
 from odometry.gap.solve import (

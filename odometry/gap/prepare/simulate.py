@@ -74,13 +74,26 @@ def residuals_on(
     scene: DenseWindows,
 ) -> FloatArray:
     """The same of a robot with twists (N, 3) on their path (N, 3)."""
-    motion = off_measured(poses_on(path, base, effects, scene), scene)
-    of_poses = motion.reshape(len(scene), -1)
+    of_poses = rows_of_poses(path, base, effects, scene)
+    of_gyroscope = rows_of_gyroscope(twists, base, effects, scene)
+    return np.concatenate([of_poses, of_gyroscope], axis=1)
+
+
+def rows_of_poses(
+    path: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
+) -> FloatArray:
+    """Residuals (K, 3 n) of all poses of each window, of a robot on a path (N, 3)."""
+    return off_measured(poses_on(path, base, effects, scene), scene).reshape(len(scene), -1)
+
+
+def rows_of_gyroscope(
+    twists: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
+) -> FloatArray:
+    """Residuals (K, n) of the turns of each window under twists (N, 3); (K, 0) without them."""
     if scene.reported_turns is None:
-        return of_poses
+        return np.empty((len(scene), 0))
     rates = reported_yaw_rate(effects, twists[:, 2], scene.inputs) + base.gyro_bias_rad_s
-    turns = scene.turns_of(rates, base.gyro_latency_s)
-    return np.concatenate([of_poses, scene.reported_turns - turns], axis=1)
+    return scene.reported_turns - scene.turns_of(rates, base.gyro_latency_s)
 
 
 def whitened_residuals(

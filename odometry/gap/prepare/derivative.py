@@ -1,0 +1,69 @@
+"""How the residuals of windows answer to small changes of values, to first order."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
+from odometry.gap.prepare.responses import Responses, whitened
+from odometry.gap.prepare.simulate import rows_of_gyroscope, rows_of_poses
+from odometry.windows.dense import DenseWindows
+
+Model = tuple[Base, tuple[Added, ...]]
+At = Callable[[FloatArray], Model]
+
+
+def whitened_derivative(
+    at: At,
+    values: FloatArray,
+    steps: FloatArray,
+    scenes: Sequence[DenseWindows],
+    whiteners: Sequence[FloatArray],
+) -> FloatArray:
+    """Derivative (R, V) of `whitened_residuals` by values (V,), over steps (V,); 0: not taken."""
+    free = np.flatnonzero(steps)
+    here = at(values)
+    stepped = [at(values + step) for step in np.diag(steps)[free]]
+    found = [
+        whitened(white, _of_scene(here, stepped, steps[free], scene))
+        for scene, white in zip(scenes, whiteners, strict=True)
+    ]
+    jacobian = np.zeros((len(values), sum(map(len, found)))).T
+    jacobian[:, free] = np.concatenate(found)
+    return jacobian
+
+
+def _of_scene(
+    model: Model, stepped: Sequence[Model], steps: FloatArray, scene: DenseWindows
+) -> FloatArray:
+    """Derivative (F, K, R) of the residuals of one scene."""
+    here = Responses(*model, scene)
+    columns = np.empty((len(steps), len(scene), scene.rows_per_window))
+    moving = np.array([here.chain.is_moved_by(*one) for one in stepped], dtype=np.bool_)
+    if moving.any():
+        changes = here.chain.at_all([stepped[place] for place in np.flatnonzero(moving).tolist()])
+        changes -= here.chain.twist
+        changes /= steps[moving, None, None]
+        columns[moving] = here.of(changes)
+    for place in np.flatnonzero(~moving).tolist():
+        columns[place] = _by_sensors(here, model, stepped[place], scene) / steps[place]
+    return columns
+
+
+def _by_sensors(here: Responses, model: Model, other: Model, scene: DenseWindows) -> FloatArray:
+    """By how much the residuals (K, R) differ where one number of the sensors is another.
+
+    What the base states of the clock of poses does nothing to the gyroscope, and the reverse.
+    """
+    (base, effects), (changed, _) = model, other
+    of_poses = 3 * (scene.windows.shape[1] - 1)
+    change = np.zeros((len(scene), scene.rows_per_window))
+    own, its = ((one.gyro_latency_s, one.gyro_bias_rad_s) for one in (base, changed))
+    if own == its:
+        change[:, :of_poses] = rows_of_poses(here.path, *other, scene) - here.rows_of_poses
+    if changed.latency_s == base.latency_s:
+        rows = rows_of_gyroscope(here.chain.twist, *other, scene)
+        change[:, of_poses:] = rows - rows_of_gyroscope(here.chain.twist, base, effects, scene)
+    return change
