@@ -13,6 +13,7 @@ from odometry.effects.tread_slip import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s
+from odometry.gap.name import form
 from odometry.gap.name.form import slow_course_in_place, without_essence
 from odometry.gap.name.general import shares_of_motion
 from odometry.gap.name.unnamed import variable_of_events
@@ -85,6 +86,38 @@ def test_what_needs_nothing_is_not_asked(make_scene, known):
     fitter = Fitter(known, measured_of([make_scene(9)], known, CONFIG))
     loss = in_course(TractionLoss(), FromAMoment())
     assert without_essence(fitter, fitter.fit([loss]), 0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("losses", "in_full"),
+    [
+        ((90.0, 124.0, 126.0, 300.0), [0, 1]),  # the name closes 100 of 200
+        ((126.0, 130.0, 140.0, 150.0), []),
+        ((60.0, 50.0, 40.0, 30.0, 20.0, 10.0), [2, 3, 4, 5]),
+    ],
+)
+def test_what_leaves_little_more_to_first_order_is_fitted_in_full(losses, in_full, monkeypatch):
+    """A quarter of what the name closes, and four functions at the most."""
+    functions = range(len(losses))
+    name = SimpleNamespace(effect=SimpleNamespace(slow=False))
+    asked = []
+
+    def fit(effects, *_, **__):
+        asked.extend(effects)
+        return SimpleNamespace(cost=200.0 - 50.0 * len(effects), effects=())
+
+    fitter = SimpleNamespace(
+        fit=fit,
+        linear_losses=lambda *_: np.array(losses),
+        spread=lambda _: 1.0,
+        measured=None,
+    )
+    monkeypatch.setattr(form, "cost_of", lambda fit: fit.cost)
+    monkeypatch.setattr(form, "surely_dearer", lambda *_: -np.inf)
+    search = SimpleNamespace(fitter=fitter, config=CONFIG, held_out=())
+    names = SimpleNamespace(effects=[name], cost=100.0)
+    assert form.smooth_in_place(search, names, 0, functions) is None
+    assert sorted(asked) == in_full
 
 
 def test_shares_of_motion_follow_every_variable(make_scene, known):
