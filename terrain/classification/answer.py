@@ -9,6 +9,9 @@ from terrain.classification.likeness import Likeness
 # Probability of being right: a wrong name costs more than twice what a right one brings.
 TRUSTED = 0.7
 DOUBTFUL = f"unlike the training photographs, and not right with a probability of {TRUSTED} or more"
+# Of any image: three of four such names would be wrong.
+PROBABLE = 0.25
+IMPROBABLE = f"right with a probability below {PROBABLE}"
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,8 @@ class Classification:
     patches : int
         That the image was cut into.
     reason : str
-        Why the label is ``unknown``: the image shows no ground, or the name is doubtful; else "".
+        Why the label is ``unknown``: the image shows no ground, or the name is doubtful or
+        improbable; else "".
     probability_right : float or None
         That the likeliest terrain is the right one, learned from images held out; `confidence` is
         no less than chance. None of models that did not learn it.
@@ -67,3 +71,14 @@ class Classification:
         if self.probability_right is None or self.probability_right >= TRUSTED:
             return self
         return replace(self, label=UNKNOWN, reason=DOUBTFUL)
+
+    def unless_improbable(self) -> Self:
+        """The answer, ``unknown`` where its name is right with less than `PROBABLE`.
+
+        Asked of every image: those of the own camera seldom have such a name.
+        """
+        if self.label == UNKNOWN or self.probability_right is None:
+            return self
+        if self.probability_right >= PROBABLE:
+            return self
+        return replace(self, label=UNKNOWN, reason=IMPROBABLE)

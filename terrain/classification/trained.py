@@ -71,8 +71,9 @@ class TrainedClassifier(ModelFile):
         their distance together, on the scale of one patch, decides whether it is unknown: that of
         their mean place among the discriminants, or with ``chen2023`` and models of files before
         version 0.13 the median of their distances. It is unknown as well where it shows no ground,
-        or things, see `Classification.reason`; ``chen2023``, models of features and of files
-        before version 0.14 do not check that, and those before 0.16 not whether it shows things.
+        or things, or where the name is improbable, see `Classification.reason`; ``chen2023``,
+        models of features and of files before version 0.14 do not check that, and those before
+        0.16 not whether it shows things, nor whether the name is improbable.
 
         Raises
         ------
@@ -85,7 +86,7 @@ class TrainedClassifier(ModelFile):
         ]
 
     def checked(self, image: ByteImage, answer: Classification) -> Classification:
-        """The answer for an image with its confidence, `unknown` where it shows no ground."""
+        """The answer for an image with its confidence, `unknown` if improbable or no ground."""
         answer = self._calibrated(image, answer)
         if self.shown_ground_ is None:
             return answer
@@ -103,12 +104,13 @@ class TrainedClassifier(ModelFile):
         votes = np.array([list(answer.probabilities.values())])
         numbers = votes, np.array([distance]), np.array([displacement])
         (given,) = self.confidence_.applied(*numbers)
-        return replace(
+        calibrated = replace(
             answer,
             confidence=float(given.max()),
             probabilities=dict(zip(answer.probabilities, given.tolist(), strict=True)),
             probability_right=float(self.confidence_.of_being_right(*numbers)[0]),
         )
+        return calibrated.unless_improbable()
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """Rows and columns in the middle of an image of such a shape: whole patches, or one."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import UNKNOWN
-from terrain.classification.answer import DOUBTFUL
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.evaluation_notes import event_line
@@ -49,7 +49,9 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
             found.append(result.watcher.classifier.described)
         likeness = result.watcher.seen.likeness
         if likeness is not None and likeness.note is not None:
-            doubted = sum(label.reason == DOUBTFUL for label in result.watcher.image_labels)
+            doubted = sum(
+                label.reason in {DOUBTFUL, IMPROBABLE} for label in result.watcher.image_labels
+            )
             learned = getattr(result.watcher.classifier, "confidence_", None) is not None
             what = f"Names that are not surely enough right are unknown ({doubted} images)"
             found.append(f"{likeness.note}. {what if learned else 'Here they count less'}")

@@ -1,5 +1,6 @@
 """Doubtful names of images unlike the training photographs."""
 
+from copy import copy
 from dataclasses import replace
 
 import cv2
@@ -7,8 +8,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from terrain.classification.answer import DOUBTFUL, Classification
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, Classification
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.likeness import Likeness
 from terrain.cli.classify import classify
 from tests.terrain.classification.test_no_ground import photographs
@@ -40,6 +42,24 @@ def test_a_doubtful_name_is_unknown_with_its_reason():
 )
 def test_every_other_answer_stays(answer, likeness):
     assert answer.unless_doubtful(likeness) == answer
+
+
+@pytest.mark.parametrize(("right", "label"), [(0.24, "unknown"), (0.25, "mud"), (None, "mud")])
+def test_a_name_that_is_wrong_three_times_of_four_is_unknown_whatever_the_images(right, label):
+    answer = replace(DOUBTED, probability_right=right).unless_improbable()
+    assert answer.label == label
+    assert answer.reason == (IMPROBABLE if label == "unknown" else "")
+    assert answer.unless_improbable() == answer
+
+
+def test_a_classifier_asks_every_image_for_a_probable_name(model):
+    images = photographs(2, photos=2)[0]
+    assert not {answer.reason for answer in model.classify(images)} & {IMPROBABLE}
+    doubting = copy(model)
+    doubting.confidence_ = AnswerConfidence(np.array([-5.0, 0.0, 0.0, 0.0]))
+    answers = doubting.classify(images)
+    assert {answer.label for answer in answers} == {"unknown"}
+    assert IMPROBABLE in {answer.reason for answer in answers}
 
 
 def test_the_verb_doubts_names_of_images_in_another_light(model, tmp_path):
