@@ -9,9 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.effects.time_course import FromAMoment
+from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of, penalty
 from odometry.gap.fit.course import CHOSEN, best_course
 from odometry.gap.fit.effect_values import is_meant
@@ -27,6 +29,7 @@ from odometry.gap.name.verdict import (
     is_even,
     is_of_stamps,
     is_special,
+    is_sure_of_its_essence,
 )
 from odometry.gap.prepare.statistic import gap_m
 
@@ -62,9 +65,23 @@ def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -
         is_even(of, search.config)
         or is_meant(added)
         or is_of_stamps(added, others, search.fitter.measured.scenes)
-        or is_by_its_essence(without_essence(search.fitter, alone, place), added, search.config)
+        or lacks_essence(search.fitter, alone, place, search.config)
         or slow_course_in_place(search, alone, place)
     )
+
+
+def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:
+    """Why an effect is not by what makes it what it is: it closes as much without, or is unsure."""
+    added = fit.effects[place]
+    closed = is_by_its_essence(without_essence(fitter, fit, place), added, config)
+    return closed or is_sure_of_its_essence(added, _deviations(fit, place), config)
+
+
+def _deviations(fit: Fitted, place: int) -> FloatArray:
+    """Standard deviations of the values of one effect."""
+    first = sum(len(one.values) for one in fit.effects[:place])
+    variances = np.diag(fit.covariance)[first : first + len(fit.effects[place].values)]
+    return np.sqrt(np.maximum(variances, 0.0))
 
 
 def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:

@@ -11,12 +11,13 @@ from odometry.effects.history import History
 from odometry.effects.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of
+from odometry.gap.fit.effect_values import is_meant
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.form import closes_less
+from odometry.gap.name.form import closes_less, lacks_essence
 from odometry.gap.name.general import general_candidates, shares_of_motion
 from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import Gap
@@ -96,14 +97,22 @@ def _names_first(search: Search, found: Explanation) -> Explanation:
 def by_fewer(search: Search, found: Explanation, candidates: Sequence[Effect]) -> Explanation:
     """The same without a first effect of many parameters, which may stand for several of few.
 
-    Of both the one of less cost.
+    Of both the one of less cost; one cause is not exchanged for names that are not what they say,
+    as a width that is everywhere the same is no curvature.
     """
     if not found.steps or found.effects[0].slow or len(found.effects[0].parameters) < MANY:
         return found
     first = found.effects[0].key
     others = search.stepwise([one for one in candidates if one.key != first])
     others = replace(others, first=found.first)
-    return others if others.steps and others.cost < found.cost else found
+    if not others.steps or others.cost >= found.cost:
+        return found
+    fit = others.fitted
+    are_meant = not any(
+        is_meant(added) or lacks_essence(search.fitter, fit, place, search.config)
+        for place, added in enumerate(fit.effects)
+    )
+    return others if are_meant else found
 
 
 def by_parts(search: Search, found: Explanation, candidates: Sequence[Effect]) -> Explanation:

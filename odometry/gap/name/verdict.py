@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect
 from odometry.effects.base_model import Base
 from odometry.effects.by_side import DelayBySide
@@ -200,6 +201,23 @@ def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
         f"without {', '.join(added.effect.essential)}, which makes it this effect, it closes "
         f"{100 * without:.0f} % of the same"
     )
+
+
+def is_sure_of_its_essence(added: Added, deviations: FloatArray, config: GapConfig) -> str:
+    """Whether one of the parameters that make a name what it is surely differs from none.
+
+    `deviations` (P,) are the standard deviations of all its values.
+    """
+    values = zip(added.effect.parameters, added.values, deviations, strict=True)
+    essential = [
+        abs(value - p.absent) / max(deviation, np.finfo(float).tiny)
+        for p, value, deviation in values
+        if p.name in added.effect.essential and p.absent is not None
+    ]
+    if not essential or max(essential) > config.sure:
+        return ""
+    names = ", ".join(added.effect.essential)
+    return f"{names}, which makes it this effect, cannot be distinguished from none"
 
 
 def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:

@@ -2,14 +2,20 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from odometry.effects.corrected import Added
+from odometry.effects.curvature import Curvature
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
 from odometry.effects.wheel_scale import WheelScale
-from odometry.gap.name.names import by_parts
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.contest import Judged
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.names import by_fewer, by_parts
 
 CANDIDATES = (WheelScale(), LateralSkid(), LeverArm(), NewIcrs(), TimeOffset())
 
@@ -65,3 +71,35 @@ def test_of_both_that_of_more_evidence_gives_the_name():
 
     names = exchanged([NewIcrs()], 100.0, cost_of_pair, first)
     assert names == ("lateral_skid", "wheel_scale")
+
+
+@pytest.mark.parametrize(
+    ("lacks", "cost", "expected"),
+    [
+        ("", 99.0, ("curvature", "lateral_skid")),
+        ("", 101.0, ("terrain",)),
+        ("without beta_1 it closes as much", 99.0, ("terrain",)),
+    ],
+)
+def test_one_cause_is_not_exchanged_for_names_that_are_not_what_they_say(
+    lacks, cost, expected, monkeypatch
+):
+    """The same width in every turn is no curvature, though its three parameters cost less."""
+    monkeypatch.setattr(
+        "odometry.gap.name.names.lacks_essence",
+        lambda _, fit, place, __: lacks if fit.effects[place].effect.name == "curvature" else "",
+    )
+    effects = [Curvature(), LateralSkid()]
+    fitted = SimpleNamespace(
+        effects=[Added(one, np.array([p.start for p in one.parameters])) for one in effects]
+    )
+    others = Explanation(
+        None, tuple(Judged(one, fitted, 9.0, 8.0, 7.0, 0.1) for one in effects), ()
+    )
+    monkeypatch.setattr(Explanation, "cost", property(lambda _: cost))
+    search = SimpleNamespace(
+        stepwise=lambda _: others, config=GapConfig(), fitter=SimpleNamespace()
+    )
+    whole = explanation([NewIcrs()], 100.0)
+    whole.steps = ("one",)
+    assert by_fewer(search, whole, CANDIDATES).names == expected

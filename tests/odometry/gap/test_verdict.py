@@ -28,6 +28,7 @@ from odometry.gap.name.verdict import (
     closes_the_most,
     is_of_stamps,
     is_resolved,
+    is_sure_of_its_essence,
     is_the_main_part,
     is_unbeaten,
     leaves_no_structure,
@@ -67,6 +68,16 @@ def test_a_loss_from_a_moment_at_an_end_of_the_runs_is_not_there(moment, there):
     loss = in_course(TractionLoss(), FromAMoment(((2.0, 158.0),)))
     reason = is_the_effect(fitted(loss, [0.8, 0.7, moment], np.eye(3) * 1e-6), CONFIG)
     assert (reason == "") == there
+
+
+@pytest.mark.parametrize(("deviation", "refused"), [(0.05, False), (0.2, True)])
+def test_a_name_is_sure_of_what_makes_it_what_it_is(deviation, refused):
+    """A curvature of 0.3 +- 0.05 is one, one of 0.3 +- 0.2 is a width that is everywhere alike."""
+    curvature = Added(Curvature(), np.array([1.2, 0.3, 0.5]))
+    reason = is_sure_of_its_essence(curvature, np.array([9.0, deviation, 9.0]), GapConfig())
+    assert ("beta_1" in reason) == refused
+    lag = Added(ActuatorLag(), np.array([0.2]))
+    assert not is_sure_of_its_essence(lag, np.array([9.0]), GapConfig())
 
 
 def test_a_parameter_at_the_end_of_its_search_is_refused():
