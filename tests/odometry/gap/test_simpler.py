@@ -10,12 +10,12 @@ from odometry.effects.curvature import Curvature
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.terrain import NewIcrs
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.names import by_fewer, by_parts
+from odometry.gap.name.names import by_fewer, by_parts, simplest
 
 CANDIDATES = (WheelScale(), LateralSkid(), LeverArm(), NewIcrs(), TimeOffset())
 
@@ -103,3 +103,23 @@ def test_one_cause_is_not_exchanged_for_names_that_are_not_what_they_say(
     whole = explanation([NewIcrs()], 100.0)
     whole.steps = ("one",)
     assert by_fewer(search, whole, CANDIDATES).names == expected
+
+
+@pytest.mark.parametrize(
+    ("constant", "form"), [(4996.0, "constant"), (5040.0, "constant"), (5060.0, "drift")]
+)
+def test_a_clock_that_is_late_and_hardly_drifts_is_late(constant, form, monkeypatch):
+    """Of 10,000 that is closed it may lose 50: less than that is no drift to speak of."""
+    drift = ClockDrift()
+    fitted = SimpleNamespace(effects=(Added(drift, np.array([0.3, 1e-4])),))
+    found = explanation([drift], 5000.0)
+    found.fitted = fitted
+    monkeypatch.setattr("odometry.gap.name.names.cost_of", lambda _: 15_000.0)
+    search = SimpleNamespace(
+        in_order=lambda _, effects: explanation(effects, constant),
+        config=GapConfig(),
+        spread_of=lambda _: 1.0,
+        start=None,
+    )
+    (effect,) = simplest(search, found, (TimeOffset(), drift, LeverArm())).effects
+    assert effect.form == form
