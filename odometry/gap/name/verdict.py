@@ -48,8 +48,8 @@ def within_noise(held_out: Gap, floor: Gap, config: GapConfig) -> str:
     if held_out.value - floor.value > config.above_floor * unsure_m:
         return ""
     return (
-        f"the gap on held-out data, {held_out.value:.3g} m, is within noise: the floor is "
-        f"{floor.value:.3g} m, and the difference is known to {unsure_m:.2g} m"
+        f"the gap on held-out data, {held_out.value:.3g} m, is not surely above the noise floor "
+        f"of {floor.value:.3g} m: the difference is known to {unsure_m:.2g} m"
     )
 
 

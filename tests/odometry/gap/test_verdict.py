@@ -192,7 +192,7 @@ def test_a_name_needs_a_gap_that_is_surely_above_the_floor(low, high, stands):
     """0.02 m above it: more than 0.016 and 0.011 at right angles, less than 0.016 and 0.013."""
     reason = within_noise(Gap(0.05, low, 0.06), Gap(0.03, 0.025, high), CONFIG)
     assert (reason == "") == stands
-    assert stands or "0.05 m, is within noise" in reason
+    assert stands or "0.05 m, is not surely above the noise floor" in reason
 
 
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
