@@ -89,6 +89,8 @@ def _effect(effect: NamedEffect, number: int) -> str:
     kind = effect.added.effect
     place = f"Effect {number}, {effect_words(effect)}, acts on the {kind.acts_on}"
     strength = f"evidence {effect.evidence:.0f}, {evidence_words(effect.evidence)}"
+    if effect.gap_after > effect.gap_before:
+        strength += ", by headings and the way there: the ends of the windows are no nearer"
     gap = (
         f"on the measured runs the gap goes from {metres(effect.gap_before)} to "
         f"{metres(effect.gap_after)} ({strength})"

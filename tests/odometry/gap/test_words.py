@@ -178,6 +178,14 @@ def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
     assert said[2] == "Look for what depends on this variable."
 
 
+def test_an_effect_by_which_the_ends_come_no_nearer_says_what_does(scaled_result):
+    wheels, *others = scaled_result.effects
+    worse = replace(wheels, gap_before=0.081, gap_after=0.088)
+    said = text(replace(scaled_result, effects=(worse, *others)))
+    assert "very strong, by headings and the way there: the ends of the windows" in said
+    assert "no nearer" not in text(scaled_result)
+
+
 def test_a_named_effect_beside_an_unknown_one(scaled_result, unknown_result):
     both = (scaled_result.effects[0], unknown_result.effects[0])
     said = sentences(replace(scaled_result, effects=both, equivalent=()))
