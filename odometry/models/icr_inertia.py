@@ -56,19 +56,19 @@ class IcrInertia(InertiaModel, InvertibleModel):
         by_zeta, by_epsilon, by_eta = zeta_1 * x2_sign, epsilon_1 * both, eta_1 * both
 
         def force_at(force_n: FloatArray) -> tuple[FloatArray, FloatArray]:
-            free_eta = eta_0 + force_n * (by_eta + eta_2 * force_n)
+            free_eta = eta_0 + force_n * (by_eta + eta_2 * force_n)  # eq. 27
             eta = np.maximum(free_eta, LEAST_ETA)
-            omega = turning / eta
-            offset, behind = by_epsilon * force_n + (epsilon_0 + y_cm), x_cm - zeta_0
-            behind = behind - by_zeta * force_n
+            omega = turning / eta  # eq. 20
+            offset = by_epsilon * force_n + (epsilon_0 + y_cm)  # eq. 26
+            behind = x_cm - zeta_0 - by_zeta * force_n  # eq. 25
             ahead, left = mean - omega * offset, behind * omega
-            speed = np.sqrt(ahead * ahead + left * left)
+            speed = np.sqrt(ahead * ahead + left * left)  # eq. 9
             turned = (free_eta > LEAST_ETA) * (by_eta + 2 * eta_2 * force_n) * (omega / -eta)
             along = ahead * (turned * offset + omega * by_epsilon)
             along -= left * (behind * turned - by_zeta * omega)
             slope = np.sign(omega) * turned * speed
             slope -= np.abs(omega) * along / np.where(speed > 0, speed, 1.0)
-            return mass * np.abs(omega) * speed, mass * slope
+            return mass * np.abs(omega) * speed, mass * slope  # eq. 11
 
         return force_at
 

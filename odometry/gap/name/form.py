@@ -73,6 +73,8 @@ def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -
 def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:
     """Why an effect is not by what makes it what it is: it closes as much without, or is unsure."""
     added = fit.effects[place]
+    if not added.effect.essential:
+        return ""
     closed = is_by_its_essence(without_essence(fitter, fit, place), added, config)
     return closed or is_sure_of_its_essence(added, _deviations(fit, place), config)
 
@@ -87,8 +89,6 @@ def _deviations(fit: Fitted, place: int) -> FloatArray:
 def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:
     """Share of what an effect closes that it closes without its essential parameters."""
     added = fit.effects[place]
-    if not added.effect.essential:
-        return 0.0
     absent = [
         float(value if p.absent is None or p.name not in added.effect.essential else p.absent)
         for p, value in zip(added.effect.parameters, added.values, strict=True)

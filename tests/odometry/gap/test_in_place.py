@@ -14,7 +14,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.name import form
-from odometry.gap.name.form import slow_course_in_place, without_essence
+from odometry.gap.name.form import lacks_essence, slow_course_in_place, without_essence
 from odometry.gap.name.general import shares_of_motion
 from odometry.gap.name.unnamed import variable_of_events
 from odometry.gap.name.verdict import come_by_themselves, is_by_its_essence
@@ -85,7 +85,7 @@ def test_a_width_that_shrinks_towards_the_straight_is(curved):
 def test_what_needs_nothing_is_not_asked(make_scene, known):
     fitter = Fitter(known, measured_of([make_scene(9)], known, CONFIG))
     loss = in_course(TractionLoss(), FromAMoment())
-    assert without_essence(fitter, fitter.fit([loss]), 0) == 0.0
+    assert lacks_essence(fitter, fitter.fit([loss]), 0, CONFIG) == ""
 
 
 @pytest.mark.parametrize(
