@@ -122,11 +122,12 @@ class RateLimit(DriveLimit):
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`; the mean over each sample, exact for held commands."""
-        speeds = inputs.tread_speeds_m_s
-        if inputs.time_s is None:
+        speeds, time_s = inputs.tread_speeds_m_s, inputs.time_s
+        if time_s is None:
             return speeds
-        asked = (values, speeds, inputs.time_s)
-        return self._limits.to(asked, lambda: limited(float(values[0]), speeds, *asked[2:]))
+        return self._limits.to(
+            (values, speeds, time_s), lambda: limited(float(values[0]), speeds, time_s)
+        )
 
 
 def limited(most: float, speeds: FloatArray, time_s: FloatArray) -> FloatArray:

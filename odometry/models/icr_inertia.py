@@ -8,14 +8,11 @@ from odometry.models.base import vectors
 from odometry.models.inertia_forces import (
     CENTRE_OF_MASS,
     COEFFICIENTS,
-    LEAST_ETA,
     Column,
-    ForceAt,
     consistent_force,
     indices_under,
 )
-from odometry.models.inertia_model import G_M_S2, InertiaModel, Turn, signs_of
-from odometry.models.inputs import Inputs
+from odometry.models.inertia_model import G_M_S2, InertiaModel, Turn
 from odometry.models.invertible import InvertibleModel, icr_tread_speeds
 
 
@@ -43,34 +40,6 @@ class IcrInertia(InertiaModel, InvertibleModel):
             momentum_rate * by_omega + mass * np.sign(omega) * speed,
         )
         return momentum_rate * speed, vectors(*by_turn)
-
-    def force_at(self, values: FloatArray, inputs: Inputs) -> ForceAt:
-        """See `InertiaModel.force_at`; of one robot in few operations, as it is asked often."""
-        if values.ndim > 1:
-            return super().force_at(values, inputs)
-        x1_sign, x2_sign = signs_of(values, inputs)
-        both = x1_sign * x2_sign
-        zeta_0, zeta_1, epsilon_0, epsilon_1, eta_0, eta_1, eta_2 = values[COEFFICIENTS].tolist()
-        _, mass, x_cm, y_cm, width = values[Column.H : Column.V_LEFT].tolist()
-        mean, turning = (inputs.left + inputs.right) / 2, (inputs.right - inputs.left) / width
-        by_zeta, by_epsilon, by_eta = zeta_1 * x2_sign, epsilon_1 * both, eta_1 * both
-
-        def force_at(force_n: FloatArray) -> tuple[FloatArray, FloatArray]:
-            free_eta = eta_0 + force_n * (by_eta + eta_2 * force_n)  # eq. 27
-            eta = np.maximum(free_eta, LEAST_ETA)
-            omega = turning / eta  # eq. 20
-            offset = by_epsilon * force_n + (epsilon_0 + y_cm)  # eq. 26
-            behind = x_cm - zeta_0 - by_zeta * force_n  # eq. 25
-            ahead, left = mean - omega * offset, behind * omega
-            speed = np.sqrt(ahead * ahead + left * left)  # eq. 9
-            turned = (free_eta > LEAST_ETA) * (by_eta + 2 * eta_2 * force_n) * (omega / -eta)
-            along = ahead * (turned * offset + omega * by_epsilon)
-            along -= left * (behind * turned - by_zeta * omega)
-            slope = np.sign(omega) * turned * speed
-            slope -= np.abs(omega) * along / np.where(speed > 0, speed, 1.0)
-            return mass * np.abs(omega) * speed, mass * slope  # eq. 11
-
-        return force_at
 
     def caused_force_gradient(self, values: FloatArray, turn: Turn) -> FloatArray:
         """See `InertiaModel.caused_force_gradient`."""

@@ -30,7 +30,7 @@ class FeatureSettings:
     Attributes
     ----------
     grey_copies, colour_copies : tuple of str
-        By name.
+        Those that SFTA describes, by name. With colour copies, the statistics are in colour too.
     n_thresholds : int
         For each copy.
     counts_per_area : bool

@@ -158,11 +158,14 @@ def simplest(search: Search, found: Explanation, candidates: Sequence[Effect]) -
             if is_part or (simpler and other.name in alike and other.name not in found.names):
                 effects = [*found.effects[:place], other, *found.effects[place + 1 :]]
                 exchanged = search.in_order(found, effects)
-                closed = cost_of(search.start) - found.cost
-                margin = margin_of(search.config, search.spread_of(exchanged), closed)
-                most = found.cost + margin * is_part
-                found = exchanged if exchanged.cost < most else found
+                margin = _margin(search, found, exchanged) if is_part else 0.0
+                found = exchanged if exchanged.cost < found.cost + margin else found
     return found
+
+
+def _margin(search: Search, found: Explanation, exchanged: Explanation) -> float:
+    closed = cost_of(search.start) - found.cost
+    return margin_of(search.config, search.spread_of(exchanged), closed)
 
 
 def _is_part(one: Effect, other: Effect) -> bool:
