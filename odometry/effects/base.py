@@ -117,6 +117,10 @@ class Effect(ABC):
         """Values (S, P) from which a search begins."""
         return np.array([[parameter.start for parameter in self.parameters]])
 
+    def elsewhere(self, values: FloatArray) -> FloatArray:
+        """Values (S, P) to which a search goes on from (P,) where they cost less."""
+        return np.empty((0, len(values)))
+
     def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the interface
         """Values (P,) that are usual, and how far others are from them; infinite: no matter."""
         count = len(self.parameters)

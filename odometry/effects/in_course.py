@@ -45,6 +45,12 @@ class _InCourse(Effect):
         first, courses = self.inner.starts(inputs, base)[0], self.in_time.starts()
         return np.hstack([np.tile(first, (len(courses), 1)), courses])
 
+    def elsewhere(self, values: FloatArray) -> FloatArray:
+        """See `Effect.elsewhere`: the same effect at other moments."""
+        own, course = self._split(values)
+        courses = self.in_time.elsewhere(course)
+        return np.hstack([np.tile(own, (len(courses), 1)), courses])
+
     def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:
         """See `Effect.usual`."""
         centre, spread = self.inner.usual(base)

@@ -43,6 +43,10 @@ class Course(ABC):
         """Values (S, P) from which a search begins."""
         return np.empty((1, 0))
 
+    def elsewhere(self, values: FloatArray) -> FloatArray:
+        """Values (S, P) to which a search goes on from (P,) where they cost less."""
+        return np.empty((0, len(values)))
+
     def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
         """Whether something was measured on both sides of the values (P,)."""
         return True
@@ -95,12 +99,19 @@ class FromAMoment(Course):
 
     def starts(self) -> FloatArray:
         """Moments (S, P) evenly spread over each of P runs in turn, the others not begun."""
+        return self._moments(np.array([parameter.high for parameter in self.parameters]))
+
+    def elsewhere(self, values: FloatArray) -> FloatArray:
+        """Moments (S, P) of each of several runs in turn, those of the others as they are."""
+        return self._moments(values) if len(values) > 1 else np.empty((0, len(values)))
+
+    def _moments(self, others: FloatArray) -> FloatArray:
+        """Moments (S, P) evenly spread over each of P runs in turn beside those of the others."""
         most = max(1, MOST_MOMENTS // len(self.observed_s))
-        never = np.array([parameter.high for parameter in self.parameters])
         found = []
         for place, (first_s, last_s) in enumerate(self.observed_s):
             count = int(np.clip((last_s - first_s) / SPACING_S, 1, most))
-            moments = np.tile(never, (count, 1))
+            moments = np.tile(others, (count, 1))
             moments[:, place] = first_s + (last_s - first_s) * (np.arange(count) + 0.5) / count
             found.append(moments)
         return np.concatenate(found)

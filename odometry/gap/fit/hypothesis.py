@@ -116,6 +116,16 @@ class Hypothesis:
         )
         return self.calibration.uncertain.at(values[: self.of_base]), added
 
+    def elsewhere(self, values: FloatArray) -> list[FloatArray]:
+        """Values (V,) with those of one effect where its search may go on from."""
+        found = []
+        for effect, end in zip(self.effects, self._ends, strict=True):
+            own = slice(end - len(effect.parameters), end)
+            for there in effect.elsewhere(values[own]):
+                found.append(values.copy())
+                found[-1][own] = there
+        return found
+
     def rows(self, values: FloatArray) -> FloatArray:
         """Rows of the windows, then those of what is known of the base and usual of effects."""
         base, added = self.split(values)
@@ -220,12 +230,13 @@ def _search(hypothesis: Hypothesis, start: FloatArray, iterations: int, held: Bo
 
 
 def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray, jumps: BoolArray) -> Found:
-    """Search on from jumps of the values whose derivatives are small."""
+    """Search on from jumps of the values whose derivatives are small, and from elsewhere."""
     places = np.flatnonzero(jumps & ~held)
     unit = np.diag(hypothesis.scales)
     steps = [jump * unit[place] for place in places for jump in JUMPS]
     for _ in range(MOST_JUMPS if steps else 0):
         tried = [np.clip(found.values + step, *hypothesis.bounds) for step in steps]
+        tried += [np.where(held, found.values, v) for v in hypothesis.elsewhere(found.values)]
         costs = np.nan_to_num([np.sum(hypothesis.rows(v) ** 2) for v in tried], nan=np.inf)
         if costs.min() > found.cost - 1:
             break

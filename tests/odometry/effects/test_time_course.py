@@ -57,6 +57,17 @@ def test_searches_begin_all_over_each_run(bench):
         assert np.diff(moments) == pytest.approx(max(span_s / 30, SPACING_S), rel=0.02)
 
 
+def test_a_search_goes_on_to_other_moments_of_one_run_at_a_time():
+    effect = in_course(TractionLoss(), FromAMoment(((2.0, 160.0), (1.0, 31.0))))
+    values = np.array([0.7, 0.4, 60.0, 32.0])
+    elsewhere = effect.elsewhere(values)
+    assert len(elsewhere) == 40
+    np.testing.assert_array_equal(elsewhere[:, :2], np.tile([0.7, 0.4], (40, 1)))
+    np.testing.assert_array_equal((elsewhere[:, 2:] != values[2:]).sum(axis=1), 1)
+    alone = in_course(TractionLoss(), FromAMoment())
+    assert alone.elsewhere(values[:3]).shape == (0, 3)
+
+
 @pytest.mark.parametrize(
     ("moments", "meant"),
     [

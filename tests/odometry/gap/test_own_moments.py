@@ -8,8 +8,11 @@ from odometry.effects.in_course import in_course
 from odometry.effects.time_course import FromAMoment
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
+from odometry.gap.config import GapConfig
 from odometry.gap.fit import own_moments
+from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s, with_own_moments
+from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import gap_of
 
 SHARE, FIRST_S, SECOND_S = 0.6, 50.0, 83.0
@@ -35,6 +38,26 @@ def scenes(lost):
 def loss(scenes):
     effect = in_course(TractionLoss(), FromAMoment((observed_s(scenes[0]),)))
     return Added(effect, np.array([SHARE, SHARE, FIRST_S]))
+
+
+def test_two_measured_runs_have_a_moment_each(known, scenes):
+    fitter = Fitter(known, measured_of(scenes, known, GapConfig()))
+    effect = in_course(TractionLoss(), FromAMoment(tuple(observed_s(one) for one in scenes)))
+    fit = fitter.fit([effect])
+    k, m, *moments_s = fit.effects[0].values
+    assert (k, m) == pytest.approx((SHARE, SHARE), abs=0.01)
+    assert moments_s == pytest.approx([FIRST_S, SECOND_S], abs=0.5)
+    assert fitter.spread(fit) < 1.2
+
+
+def test_a_run_of_two_that_has_none_never_begins(known, make_scene, lost):
+    other = make_scene(3, lambda _, twist: twist, duration_s=120.0, name="whole").numbered(1)
+    both = (lost(1, FIRST_S, 0), other)
+    fitter = Fitter(known, measured_of(both, known, GapConfig()))
+    effect = in_course(TractionLoss(), FromAMoment(tuple(observed_s(one) for one in both)))
+    first_s, second_s = fitter.fit([effect]).effects[0].values[2:]
+    assert first_s == pytest.approx(FIRST_S, abs=0.5)
+    assert second_s > observed_s(other)[1]
 
 
 def test_the_other_run_has_a_moment_of_its_own(known, scenes, loss):
