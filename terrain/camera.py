@@ -159,6 +159,12 @@ class Camera:
         """Matrix (3, 3) from ground (x, y, 1) to rays in the optical frame, z the depth."""
         return np.asarray(np.linalg.solve(self.matrix, self.ground_to_image))
 
+    @cached_property
+    def height_m(self) -> float:
+        """Height of the camera above the ground [m], of a mount or of a homography."""
+        forward, left, there = (self.ground_to_ray / np.linalg.norm(self.ground_to_ray[:, 0])).T
+        return float(abs(np.cross(forward, left) @ there))
+
     def ground_to_pixels(self, points: ArrayLike) -> FloatArray:
         """Where ground points appear in the raw (distorted) image (Chen 2023 eq. 17).
 

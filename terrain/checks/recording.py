@@ -25,6 +25,7 @@ from terrain.checks.image_files import (
     sample_images,
     spread,
 )
+from terrain.checks.image_motion import image_motion
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
 from terrain.checks.region_ahead import region_ahead, vision_model
@@ -41,7 +42,8 @@ def check_run(
     """What is odd about a recording and its camera: likeliest cause, remedy, most important first.
 
     Beside what `odometry.check_recording` finds: the camera's numbers are tried on the motion of
-    the run, and at most 100 images spread over it are read, 20 of them decoded.
+    the run, at most 100 images spread over it are read, 20 of them decoded, and the terrain in 32
+    pairs of images is compared with the motion of the treads.
 
     Parameters
     ----------
@@ -71,8 +73,8 @@ def check_run(
     report = check_recording(run)
     if report.at(Level.REFUSED):
         return report.with_more((), ("the camera: the recording is refused",))
-    findings = list(_findings(run, classifier))
-    return report.with_more(findings, _skipped(run))
+    report = report.with_more(_findings(run, classifier), _skipped(run))
+    return report.with_more(*_motion(run, report))
 
 
 def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Finding]:
@@ -111,6 +113,16 @@ def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Findin
     yield from image_values(_values(images, camera, run))
     if classifier is not None:
         yield from vision_model(classifier, _camera(table), run.robot)
+
+
+def _motion(run: Run, report: CheckReport) -> tuple[Sequence[Finding], Sequence[str]]:
+    """Images against the motion of the treads, where nothing else is wrong with either."""
+    if run.images is None:
+        return (), ()
+    if report.misleads:
+        return (), ("whether images show the motion of the treads: see the warnings",)
+    findings, skipped = image_motion(run, Camera.from_table(run.settings["camera"]))
+    return findings, (skipped,) if skipped else ()
 
 
 def _camera(table: Mapping[str, Any]) -> Camera | None:

@@ -99,7 +99,7 @@ def simulated_bases(cache, half):
         for name, options in SIMULATED[part].items():
             bases.append(_made(cache, f"simulated_{name}", ["simulate", *options.split()]))
         if part in SYNTHESISED:
-            options = ["synthesise", "--image-rate", "0.5", *SYNTHESISED[part].split()]
+            options = ["synthesise", "--image-rate", "2", *SYNTHESISED[part].split()]
             bases.append(_made(cache, f"synthesised_{part}", options))
     truth = bases[0]
     bases.append(Base(f"{truth.name}_with_truth", Path(cache) / "truth", frozenset({"truth"})))

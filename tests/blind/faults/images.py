@@ -120,6 +120,32 @@ def other_clock(recording, rng):
     return recording.restamped(lambda t: t + start, ["images"])
 
 
+def late(recording, rng):
+    """Stamped on arrival, or early by a clock of their own."""
+    off_s = rng.choice([-1, 1]) * rng.uniform(0.4, 4.0)
+    return recording.restamped(lambda t: t + off_s, ["images"])
+
+
+def backwards(recording, rng):  # noqa: ARG001
+    return recording.with_columns("images", file=recording["images"]["file"][::-1].copy())
+
+
+def mirror(pixels, setting, rng):  # noqa: ARG001
+    return cv2.flip(pixels, 1)
+
+
+def wrong_height(recording, rng):
+    mount = camera(recording)["mount"]
+    times = float(rng.choice([0.5, 0.7, 1.5, 2.0]))
+    return with_camera(recording, "mount", [*mount[:2], times * mount[2], *mount[3:]])
+
+
+def wrong_yaw(recording, rng):
+    mount = camera(recording)["mount"]
+    turn = rng.choice([-1, 1]) * rng.uniform(0.35, 1.6)
+    return with_camera(recording, "mount", [*mount[:5], float(mount[5] + turn)])
+
+
 # fmt: off
 FAULTS = (
     Fault("camera_mount_in_degrees", "warning", "The mount's angles are in degrees.",
@@ -152,5 +178,15 @@ FAULTS = (
            "contrast"), _encoded(darken, ".png"), IMAGES),
     Fault("images_on_another_clock", "warning", "Images are stamped from 1970, odometry from 0.",
           CLOCK, other_clock, IMAGES),
+    Fault("images_late", "warning", "Images are stamped late or early by some tenths to seconds.",
+          ("late", "early", "delay", "latency", "arriv", "lag"), late, IMAGES),
+    Fault("images_backwards", "warning", "images.csv names the files from last to first.",
+          ("order", "revers", "backward"), backwards, IMAGES),
+    Fault("images_mirrored", "warning", "Images are mirrored, left is right.",
+          ("mirror", "flip"), _encoded(mirror, ".png"), IMAGES),
+    Fault("camera_of_another_height", "warning", "The mount's height is wrong by a factor.",
+          ("high", "height"), wrong_height, IMAGES),
+    Fault("camera_of_another_yaw", "warning", "The mount's yaw is off by 20 degrees and more.",
+          ("yaw", "looks", "side", "direction"), wrong_yaw, IMAGES),
 )
 # fmt: on

@@ -1,0 +1,153 @@
+"""How the motion in images goes with that of the robot: when, in which size and direction."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from odometry.arrays import FloatArray
+from odometry.checks.cleaned_recording import CleanedRecording
+from odometry.run import Run
+from terrain.checks.ground_steps import GroundSteps
+
+Complex = NDArray[np.complex128]
+
+LARGEST_LAG_S, LAG_STEP_S = 10.0, 0.05
+ORDINARY_WIDTH = 1.8  # effective width in track widths, where no gyroscope measures the turn
+# Standard deviations of a step at the least: on level terrain, by a camera that does not rock
+PLACE_M, PLACE, TURN_RAD, TURN = 0.01, 0.05, 0.02, 0.1
+MEDIAN = 1.2  # of the larger of two such deviations, by chance
+ROUNDS = 5  # of reweighting
+BLOCKS = 8  # of the run, each left out once (jackknife)
+
+
+@dataclass(frozen=True, eq=False)
+class Agreement:
+    """How steps by P pairs of images go with those of the robot, at G lags of the images.
+
+    Attributes
+    ----------
+    gains : (G,) of complex
+        Steps by images over those of the treads, their size and direction.
+    turns : (G,)
+        Turns by images over those of the robot.
+    off : (G, P)
+        What is left of a step and a turn, the larger of both in standard deviations.
+    losses : (G, P)
+        Cauchy's loss of both [nats].
+    """
+
+    gains: Complex
+    turns: FloatArray
+    off: FloatArray
+    losses: FloatArray
+
+
+def agreement(
+    steps: FloatArray, travel_m: FloatArray, turn_rad: FloatArray, noise: float
+) -> Agreement:
+    """Compare steps (P, 3) by images with travel (G, P) and turn (G, P) of the robot."""
+    place, yaw = steps[:, 0] + 1j * steps[:, 1], steps[:, 2].astype(np.complex128)
+    moved = travel_m * np.sinc(turn_rad / (2 * np.pi)) * np.exp(0.5j * turn_rad)
+    place_sd = noise * (PLACE_M + PLACE * np.abs(place))
+    turn_sd = noise * (TURN_RAD + TURN * np.abs(yaw))
+    off, aside = np.zeros(moved.shape), np.zeros(moved.shape)
+    for _ in range(ROUNDS):
+        gains = _slopes(place, moved, (1 + off**2) * place_sd**2)
+        turns = _slopes(yaw, turn_rad.astype(np.complex128), (1 + aside**2) * turn_sd**2)
+        off = np.abs(place - gains[:, None] * moved) / place_sd
+        aside = np.abs(yaw - turns[:, None] * turn_rad) / turn_sd
+    losses = np.log1p(off**2) + np.log1p(aside**2)
+    return Agreement(gains, turns.real, np.maximum(off, aside), losses)
+
+
+def _slopes(values: Complex, by: Complex, variances: FloatArray) -> Complex:
+    """Slopes (G,) of values (P,) over others (G, P), through the origin."""
+    squares = (np.abs(by) ** 2 / variances).sum(axis=1)
+    products = (by.conj() * values / variances).sum(axis=1)
+    return np.asarray(products / np.maximum(squares, 1e-12))
+
+
+@dataclass(frozen=True, eq=False)
+class ImageMotion:
+    """The motion in the images of a run beside that of its treads.
+
+    Attributes
+    ----------
+    run : Run
+    steps : GroundSteps
+    """
+
+    run: Run
+    steps: GroundSteps
+
+    @cached_property
+    def lags_s(self) -> FloatArray:
+        """Lags (G,) that are tried: 0 in the middle, above 0 where images are late."""
+        count = round(LARGEST_LAG_S / LAG_STEP_S)
+        return np.asarray(LAG_STEP_S * np.arange(-count, count + 1), dtype=np.float64)
+
+    @cached_property
+    def noise(self) -> float:
+        """Factor of the standard deviations: at the best lag half of the pairs are within."""
+        first = agreement(self.steps.steps, *self._robot(self._at_lags), 1.0)
+        best = int(first.losses.sum(axis=1).argmin())
+        return max(1.0, float(np.median(first.off[best])) / MEDIAN)
+
+    @cached_property
+    def by_lag(self) -> Agreement:
+        """At every lag."""
+        return agreement(self.steps.steps, *self._robot(self._at_lags), self.noise)
+
+    @cached_property
+    def losses(self) -> FloatArray:
+        """Loss (G,) of all pairs at every lag [nats]."""
+        return np.asarray(self.by_lag.losses.sum(axis=1))
+
+    @cached_property
+    def best(self) -> int:
+        """Place of the lag that fits best."""
+        return int(self.losses.argmin())
+
+    @cached_property
+    def lag_sd_s(self) -> float:
+        """Standard deviation of that lag, by leaving out one stretch of the run after the other."""
+        blocks = np.array_split(np.arange(len(self.steps)), BLOCKS)
+        left = [self.losses - self.by_lag.losses[:, block].sum(axis=1) for block in blocks]
+        found = self.lags_s[np.argmin(left, axis=1)]
+        spread = np.sqrt((BLOCKS - 1) / BLOCKS * np.sum((found - found.mean()) ** 2))
+        return max(float(spread), LAG_STEP_S / 2)
+
+    @cached_property
+    def reversed_loss(self) -> float:
+        """Loss where the last image was taken first."""
+        stamps_s = self.run.images.stamps_s if self.run.images is not None else np.zeros(1)
+        back_s = stamps_s[0] + stamps_s[-1] - self.steps.stamps_s
+        return self._loss_of(*self._robot(back_s[None]))
+
+    @cached_property
+    def even_loss(self) -> float:
+        """Loss of a robot that moves in the same way all the time."""
+        lasts_s = np.diff(self.steps.stamps_s, axis=1)[:, 0]
+        x, y, yaw = np.median(self.steps.steps / lasts_s[:, None], axis=0)
+        return self._loss_of(np.hypot(x, y) * lasts_s[None], yaw * lasts_s[None])
+
+    def _loss_of(self, travel_m: FloatArray, turn_rad: FloatArray) -> float:
+        return float(agreement(self.steps.steps, travel_m, turn_rad, self.noise).losses.sum())
+
+    @property
+    def _at_lags(self) -> FloatArray:
+        return np.asarray(self.steps.stamps_s - self.lags_s[:, None, None])
+
+    def _robot(self, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Travel [m] and turn [rad] (G, P) of the robot between stamps (G, P, 2)."""
+        odometry_s = self.run.odometry.stamps_s
+        at_s = stamps_s.clip(odometry_s[0], odometry_s[-1]).ravel()
+        of = CleanedRecording(self.run).integrals
+        left, right, turn = (
+            np.diff(integral(at_s).reshape(stamps_s.shape), axis=2)[..., 0]
+            for integral in (of.left_m, of.right_m, of.gyroscope_rad)
+        )
+        by_treads = (right - left) / (ORDINARY_WIDTH * self.run.robot.track_width)
+        return (left + right) / 2, np.where(np.isfinite(turn), turn, by_treads)

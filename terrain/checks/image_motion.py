@@ -1,0 +1,123 @@
+"""Whether the terrain moves through the images as the treads moved the robot, and when they did."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.checks.finding import Finding, Level
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.checks.ground_steps import ground_steps
+from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
+
+FEWEST = 16  # pairs of images
+EXPLAINED = 0.75  # of the loss of even motion: what the treads may leave, where images show them
+BETTER = 10.0  # of the loss [nats]: what a lag or the reverse order must gain
+SURE = 4.0  # standard deviations of the lag
+EDGE_M = 0.1  # travel in the time of the lag: labels that are off by less hardly matter
+LARGER = 1.2  # of a step by images over that of the treads, or the inverse: treads may slip
+ASIDE_RAD, BACKWARDS_DEG = float(np.radians(10.0)), 150.0
+MIRRORED = -0.5  # of a turn by images over that of the robot
+
+
+def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
+    """Images that are late, early, reversed or mirrored, and a camera that looks elsewhere.
+
+    Returns
+    -------
+    list of Finding
+    str
+        Why nothing could be checked, or "".
+    """
+    steps = ground_steps(run, camera)
+    if len(steps) < FEWEST:
+        return [], (
+            "whether images show the motion of the treads: the same terrain was recognised in "
+            f"{len(steps)} of {steps.tried} pairs of images, expected {FEWEST} or more"
+        )
+    motion = ImageMotion(run, steps)
+    if min(float(motion.losses[motion.best]), motion.reversed_loss) > EXPLAINED * motion.even_loss:
+        return [], (
+            "whether images show the motion of the treads: they do not agree within "
+            f"{LARGEST_LAG_S:g} s (images of another drive, a camera that rocks, or a robot that "
+            "always moves in the same way)"
+        )
+    return list(_findings(motion, camera.height_m)), ""
+
+
+def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:
+    if motion.reversed_loss < float(motion.losses[motion.best]) - BETTER:
+        yield Finding(
+            "images_reversed",
+            Level.WARNING,
+            "the terrain moves through the images as the treads did from the end of the run to "
+            "its beginning",
+            "The images are in the reverse order",
+            "Turn the order of the files in images.csv round",
+        )
+        return
+    yield from _late(motion)
+    gain, turn = motion.by_lag.gains[motion.best], motion.by_lag.turns[motion.best]
+    if turn < MIRRORED and abs(np.angle(gain)) < np.pi / 4:
+        yield _mirrored(float(turn))
+        return
+    if abs(np.angle(gain)) > ASIDE_RAD:
+        yield _aside(float(np.degrees(np.angle(gain))))
+    if not 1 / LARGER < abs(gain) < LARGER:
+        yield _larger(float(abs(gain)), height_m)
+
+
+def _late(motion: ImageMotion) -> Iterator[Finding]:
+    lag_s = float(motion.lags_s[motion.best])
+    gained = float(motion.losses[len(motion.lags_s) // 2] - motion.losses[motion.best])
+    lasts_s = np.diff(motion.steps.stamps_s, axis=1)[:, 0]
+    speed_m_s = float(np.median(np.hypot(*motion.steps.steps.T[:2]) / lasts_s))
+    if gained < BETTER or abs(lag_s) < max(SURE * motion.lag_sd_s, EDGE_M / max(speed_m_s, 1e-9)):
+        return
+    late = lag_s > 0
+    yield Finding(
+        "images_late",
+        Level.WARNING,
+        f"the terrain moves through the images as the treads did {abs(lag_s):.2f} s "
+        f"{'earlier' if late else 'later'} (95 %: +- {2 * motion.lag_sd_s:.2f} s), by "
+        f"{len(motion.steps)} pairs of images",
+        "Images are stamped late: when they arrived, or by another clock"
+        if late
+        else "Images are stamped early, or the treads late: by another clock, or on arrival",
+        f"{'Subtract' if late else 'Add'} {abs(lag_s):.2f} s {'from' if late else 'to'} the stamps "
+        "of images.csv",
+    )
+
+
+def _mirrored(turn: float) -> Finding:
+    return Finding(
+        "images_mirrored",
+        Level.WARNING,
+        f"the terrain turns through the images by {turn:.2f} times the turn of the robot",
+        "Images are mirrored, or the yaw rate (the treads, without a gyroscope) has the wrong sign",
+        "Mirror the images back, or correct the sign",
+    )
+
+
+def _aside(aside_deg: float) -> Finding:
+    degrees, side = abs(aside_deg), "left" if aside_deg < 0 else "right"
+    backwards = degrees > BACKWARDS_DEG
+    return Finding(
+        "camera_yaw",
+        Level.WARNING,
+        f"the terrain comes towards the camera {degrees:.0f} degrees beside straight ahead",
+        f"The camera looks {degrees:.0f} degrees farther to the {side} than [camera] says"
+        + (", or the images are in the reverse order" if backwards else ""),
+        "Find the mount with camera --from-motion, or correct its yaw",
+    )
+
+
+def _larger(gain: float, height_m: float) -> Finding:
+    return Finding(
+        "camera_height",
+        Level.WARNING,
+        f"the terrain moves {gain:.3g} times as far through the images as the treads went",
+        f"The camera is not {height_m:.3g} m high: {height_m / gain:.3g} m fit (or its pitch is "
+        "off, or the treads are scaled or slip)",
+        "Find the mount with camera --from-motion, or measure its height",
+    )

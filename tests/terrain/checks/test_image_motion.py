@@ -1,0 +1,125 @@
+"""Images beside the treads: stamps that are off, and cameras that look elsewhere."""
+
+import shutil
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+import odometry
+import terrain
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.checks.ground_steps import ground_steps
+from terrain.checks.image_motion import image_motion
+
+
+@pytest.fixture(scope="module")
+def drive():
+    return Run.read(odometry.shipped_data() / "runs" / "demo")
+
+
+@pytest.fixture(scope="module")
+def camera(drive):
+    return Camera.from_table(drive.settings["camera"])
+
+
+def with_images(run, **columns):
+    return replace(run, images=replace(run.images, columns=run.images.columns | columns))
+
+
+def turned(camera, place, change):
+    mount = camera.mount.copy()
+    mount[place] = change(mount[place])
+    return Camera.from_mount(camera.image_size, camera.matrix, camera.distortion, mount)
+
+
+def found(run, camera):
+    findings, skipped = image_motion(run, camera)
+    assert not skipped
+    return {finding.name: finding for finding in findings}
+
+
+def test_steps_by_the_terrain_are_those_of_the_truth(drive, camera):
+    steps = ground_steps(drive, camera)
+    assert len(steps) == steps.tried == 32
+    stamps_s, true = drive.truth.stamps_s, drive.truth.stack("x", "y", "yaw")
+    first, second = (
+        np.column_stack([np.interp(s, stamps_s, of) for of in (*true.T[:2], np.unwrap(true[:, 2]))])
+        for s in steps.stamps_s.T
+    )
+    moved = (second[:, 0] - first[:, 0]) + 1j * (second[:, 1] - first[:, 1])
+    moved = moved * np.exp(-1j * first[:, 2])
+    assert np.abs(steps.steps[:, 0] + 1j * steps.steps[:, 1] - moved).max() < 0.02
+    assert np.abs(steps.steps[:, 2] - (second - first)[:, 2]).max() < 0.02
+
+
+def test_nothing_is_odd_about_the_run_as_it_is(drive, camera):
+    assert found(drive, camera) == {}
+
+
+@pytest.mark.parametrize("late_s", [-2.0, -0.3, 0.3, 3.0])
+def test_a_lag_of_the_images_is_measured(drive, camera, late_s):
+    run = with_images(drive, t=drive.images.stamps_s + late_s)
+    finding = found(run, camera)["images_late"]
+    word = "Subtract" if late_s > 0 else "Add"
+    assert finding.remedy.startswith(f"{word} {abs(late_s):.2f} s")
+
+
+def test_a_lag_that_moves_labels_by_centimetres_is_none(drive, camera):
+    assert found(with_images(drive, t=drive.images.stamps_s + 0.1), camera) == {}
+
+
+@pytest.mark.parametrize("times", [0.5, 1.5])
+def test_another_height_of_the_camera_is_measured(drive, camera, times):
+    cause = found(drive, turned(camera, 2, lambda z: times * z))["camera_height"].cause
+    fits_m = float(cause.split(": ")[1].split(" m fit")[0])
+    assert fits_m == pytest.approx(1.2, rel=0.02)
+
+
+@pytest.mark.parametrize(("degrees", "words"), [(20, "right"), (-90, "left"), (180, "reverse")])
+def test_a_camera_that_looks_elsewhere_is_named(drive, camera, degrees, words):
+    other = turned(camera, 5, lambda yaw: yaw + np.radians(degrees))
+    cause = found(drive, other)["camera_yaw"].cause
+    assert words in cause
+    assert f"{abs(degrees)} degrees" in cause
+
+
+def test_images_in_the_reverse_order_are_named(drive, camera):
+    run = with_images(drive, file=drive.images["file"][::-1].copy())
+    assert set(found(run, camera)) == {"images_reversed"}
+
+
+def test_images_of_another_drive_are_not_judged(drive, camera):
+    files = drive.images["file"]
+    findings, skipped = image_motion(
+        with_images(drive, file=np.roll(files, len(files) // 2)), camera
+    )
+    assert findings == []
+    assert "do not agree within 10 s" in skipped
+
+
+def test_images_in_no_order_are_not_judged(drive, camera):
+    files = np.random.default_rng(3).permutation(drive.images["file"])
+    findings, skipped = image_motion(with_images(drive, file=files), camera)
+    assert findings == []
+    assert "of 32 pairs of images" in skipped
+
+
+def test_mirrored_images_are_named_by_check(drive, tmp_path):
+    folder = tmp_path / "mirrored"
+    shutil.copytree(drive.folder, folder)
+    for file in (folder / "images").iterdir():
+        cv2.imwrite(str(file), cv2.flip(cv2.imread(str(file)), 1))
+    assert [one.name for one in terrain.check_run(folder).findings] == ["images_mirrored"]
+
+
+def test_what_other_warnings_explain_is_not_compared(drive):
+    swapped = {name: drive.odometry[other] for name, other in
+               (("v_left", "v_right"), ("v_right", "v_left"))}  # fmt: skip
+    odometer = replace(drive.odometry, columns=drive.odometry.columns | swapped)
+    report = terrain.check_run(replace(drive, odometry=odometer))
+    assert report.misleads
+    assert not any(one.name.startswith(("images_", "camera_")) for one in report.findings)
+    assert any("see the warnings" in words for words in report.skipped)
