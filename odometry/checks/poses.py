@@ -179,6 +179,13 @@ def pose_outages(evidence: Evidence) -> Iterator[Finding]:
 
 
 LEAST_YAW_JUMP_RAD = np.radians(25)
+HALF_TURN_RAD = np.radians(30)  # a jump that is off by less is half a turn
+REVERSES_S = np.array([-2.0, -0.3, 0.3, 2.0])  # from a jump: before it, and after it
+AS_COURSE = (
+    "Yaw is the course over ground, which turns round where the robot reverses: not the heading "
+    "(a receiver without a second antenna or a compass)",
+    "Leave yaw empty: positions alone are used then",
+)
 
 
 def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
@@ -207,6 +214,8 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
     if not peaks:
         return
+    turned = [i for i in peaks if abs(step[i] - np.pi) < HALF_TURN_RAD]
+    reverses = sum(_reverses(evidence, float(stamps_s[i])) for i in turned)
     yield Finding(
         "yaw_jumps",
         Level.WARNING,
@@ -215,7 +224,23 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
             f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
             for i in peaks[:SHOWN]
         ),
-        "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, antennas)",
-        "Number the stretches between jumps in a column `window`, or cut with --from and --to",
+        *(
+            AS_COURSE
+            if 2 * reverses > len(peaks)
+            else (
+                "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, "
+                "antennas)",
+                "Number the stretches between jumps in a column `window`, or cut with --from and "
+                "--to",
+            )
+        ),
         moments(evidence, stamps_s[peaks]),
     )
+
+
+def _reverses(evidence: Evidence, stamp_s: float) -> bool:
+    """Whether the robot drives the other way soon after a stamp than it did before."""
+    at_s = np.clip(stamp_s + REVERSES_S, evidence.stamps_s[0], evidence.stamps_s[-1])
+    of = evidence.integrals
+    before_m, after_m = np.diff(of.left_m(at_s) + of.right_m(at_s))[[0, -1]]
+    return bool(before_m * after_m < 0)

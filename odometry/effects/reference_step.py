@@ -65,6 +65,21 @@ class ReferenceStep(MeasurementEffect):
                 found.append(start)
         return np.unique(found, axis=0)
 
+    def elsewhere(self, values: FloatArray) -> FloatArray:
+        """See `Effect.elsewhere`: each break of each of several runs, a step as large as another's.
+
+        Its size in either direction.
+        """
+        found = []
+        sizes = values[::OF_EACH]
+        largest = float(sizes[np.argmax(np.abs(sizes))])
+        for run, moments_s in enumerate(self.breaks_s if len(self.breaks_s) > 1 else ()):
+            for size in (largest, -largest):
+                for moment_s in moments_s:
+                    found.append(values.copy())
+                    found[-1][OF_EACH * run : OF_EACH * (run + 1)] = size, moment_s
+        return np.array(found).reshape(-1, len(values))
+
     def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
         """See `Effect.resolution`."""
         return np.tile([0.0, KNOWN_S], len(values) // OF_EACH)

@@ -57,6 +57,11 @@ class GapConfig:
     least_beside : float
         Share of what a name closes alone that it must still close beside a smooth function that
         beats it. Beside a function that does the same it closes 0.1 at most.
+    main_part : float
+        Share of what a smooth function closes in the place of a name that is a part of it, which
+        the name must close to be its main part.
+    no_farther : float
+        Share by which positions may be farther off beside a gyroscope at fault, which moves none.
     unexplained : float
         Chi-squared a degree of freedom above which what is left is not noise.
     left_over, mostly_closed, contact_closed, bursts_closed : float
@@ -69,6 +74,9 @@ class GapConfig:
         In how many times its uncertainty of 95 % the gap on held-out data must be above the noise
         floor before anything is added. Of real recordings changed by hand, in windows where it was
         not, 4 of 7 names were wrong.
+    turns_above : float
+        The same of headings and of the gyroscope, by which a gap is judged where positions are not
+        as far above their floor. Three of ten runs without an effect were above 0.8, none above 1.
     least_held_out : float
         Share of the excess on held-out data that names must close. On development seeds right
         names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.
@@ -156,12 +164,15 @@ class GapConfig:
     general_margin: float = 6.0
     least_better: float = 0.005
     least_beside: float = 0.5
+    main_part: float = 0.9
+    no_farther: float = 0.01
     unexplained: float = 1.3
     left_over: float = 1.5
     mostly_closed: float = 0.8
     contact_closed: float = 0.4
     bursts_closed: float = 0.93
     above_floor: float = 1.0
+    turns_above: float = 1.5
     least_held_out: float = 0.1
     least_of_rest: float = 0.5
     least_of_all: float = 0.7
@@ -221,6 +232,7 @@ class GapConfig:
             ),
             "least_better",
             "least_beside",
+            *("main_part", "no_farther"),
             "beyond_first_order",
             *("base_probability", "least_odds", "sure_odds"),
         ):

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tqdm import tqdm
 
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
 from odometry.errors import GapError
 from odometry.gap.answer.answer import (
     drives_apart,
@@ -22,7 +24,8 @@ from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.locate.locate import locate
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.by_terrain import by_terrain
-from odometry.gap.prepare.calibration import calibrated
+from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.judged import judged_by
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.rounding import rounding_notes
 from odometry.gap.prepare.scenes import (
@@ -34,12 +37,13 @@ from odometry.gap.prepare.scenes import (
     scenes_of,
     without_outliers,
 )
-from odometry.gap.prepare.statistic import floor_of, floor_there, gap_m, gap_of
+from odometry.gap.prepare.statistic import Gap, Measure, floor_of, floor_there, gap_m, gap_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.positions.heading import headed
 from odometry.run import Run, check_no_run_twice
+from odometry.windows.dense import DenseWindows
 
 
 def find_gap(
@@ -113,23 +117,23 @@ def find_gap(
     )
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
+    measure = judged_by(known, held_scenes, config, has_yaw=not headings.found)
+    own_floor = floor_of(known.held_back, config.part_s, measure)
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
         floors = (
-            floor_there(floor, known, fitted_scenes, config),
-            floor_there(floor, known, held_scenes, config),
+            floor_there(own_floor, known, fitted_scenes, config),
+            floor_there(own_floor, known, held_scenes, config),
         )
         found = explained(fitter, held_scenes, floors, config, _counting(bar))
     fit = found.fitted
     base = fit.base if found.steps or found.base_closes else known.base
     effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes, known)
-    closings = [
-        Closing(
-            gap_of(known.base, (), scenes if outliers is None else raw, config.part_s),
-            gap_of(base, effects, scenes, config.part_s),
-            floor_there(floor, known, scenes, config),
-        )
-        for scenes, raw in zip((fitted_scenes, held_scenes), raw_scenes, strict=True)
-    ]
+    after = base, effects
+    scenes = (fitted_scenes, held_scenes)
+    befores = scenes if outliers is None else raw_scenes
+    pairs = tuple(zip(befores, scenes, strict=True))
+    closings = _closings(known, after, pairs, floor, config)
+    judged = _closings(known, after, pairs, own_floor, config)
     believed_m = gap_m(known.base, (), fitted_scenes)
     named = named_effects(found, effects, believed_m)
     if outliers is not None:
@@ -142,7 +146,7 @@ def find_gap(
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:
         named = (rounding, *named)
-    verdict = named[0].added.effect.name if named else verdict_of(found, closings[1])
+    verdict = named[0].added.effect.name if named else verdict_of(found, judged[1])
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
     return GapResult(
@@ -152,6 +156,7 @@ def find_gap(
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
         measured=closings[0],
         holdout=closings[1],
+        by_turns=judged if measure is not Measure.POSITION else None,
         rivals=rivals_of(found),
         calibration=known,
         base=base,
@@ -163,6 +168,25 @@ def find_gap(
         refusals=found.refusals,
         holdout_before=() if outliers is None else tuple(raw_scenes[1]),
     )
+
+
+def _closings(
+    known: Calibration,
+    after: tuple[Base, Sequence[Added]],
+    pairs: Sequence[tuple[Sequence[DenseWindows], Sequence[DenseWindows]]],
+    floor: Gap,
+    config: GapConfig,
+) -> tuple[Closing, Closing]:
+    """Of windows before and after, measured and held out, by the measure of a floor."""
+    fitted, held_out = (
+        Closing(
+            gap_of(known.base, (), before, config.part_s, floor.measure),
+            gap_of(*after, of, config.part_s, floor.measure),
+            floor_there(floor, known, of, config),
+        )
+        for before, of in pairs
+    )
+    return fitted, held_out
 
 
 def _counting(bar: "tqdm[None]") -> Callable[[], None]:

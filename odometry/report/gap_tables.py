@@ -19,11 +19,18 @@ def closing_grid(result: GapResult, share: Share | None) -> Grid:
     """The gap before and after."""
     held = "-" if share is None else percent(share)
     rows = [
-        ("held out", *_closing(result.holdout), held),
+        ("held out", *_closing(result.holdout), "-" if result.by_turns else held),
         ("measured, fitted", *_closing(result.measured), "-"),
     ]
+    error = "position error"
+    if result.by_turns:
+        fitted, held_out = result.by_turns
+        noun = held_out.before.measure.noun
+        rows.append((f"held out, {noun}", *_closing(held_out), held))
+        rows.append((f"measured, {noun}", *_closing(fitted), "-"))
+        error = f"position error, and {noun}, by which the effects are judged,"
     header = ("windows", "before", "after", "noise floor", "excess closed")
-    caption = f"RMS position error over windows of {result.horizon_s:g} s, with 95 % intervals."
+    caption = f"RMS {error} over windows of {result.horizon_s:g} s, with 95 % intervals."
     return Grid(header, rows, caption)
 
 

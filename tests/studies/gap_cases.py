@@ -1,7 +1,7 @@
 """The gap workflow on blind cases: what it names, and how much of the held-out excess it closes.
 
     python -m tests.studies.gap_cases [--seeds 20] [--group seen slips] [--kinds KIND ...]
-                                      [--first-seed 0] [--out gap_cases] [--jobs 2]
+                                      [--first-seed 0] [--out gap_cases] [--jobs 2] [--both]
 
 Cases come from `tests/blind`, whose generators know nothing of the catalogue of effects. Seeds
 take turns at three noise levels of the pose. Every case is a row of cases.csv, written as soon as
@@ -52,6 +52,9 @@ def main() -> None:
     parser.add_argument("--kinds", nargs="*", choices=NAMES, help="instead of groups")
     parser.add_argument("--out", type=Path, default=Path("gap_cases"))
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument(
+        "--both", action="store_true", help="Measure on both runs, and hold out pieces of them."
+    )
     arguments = parser.parse_args()
     kinds = arguments.kinds or [kind for group in arguments.group for kind in KINDS[group]]
     seeds = range(arguments.first_seed, arguments.first_seed + arguments.seeds)
@@ -65,7 +68,9 @@ def main() -> None:
         if not rows:
             sheet.writeheader()
         studied = Parallel(n_jobs=arguments.jobs, return_as="generator")
-        for row in studied(delayed(study)(kind, seed) for kind, seed in wanted):
+        for row in studied(
+            delayed(study)(kind, seed, both=arguments.both) for kind, seed in wanted
+        ):
             rows.append(row)
             sheet.writerow(row)
             stream.flush()
@@ -82,7 +87,7 @@ def read(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def study(kind: str, seed: int) -> dict[str, str]:
+def study(kind: str, seed: int, *, both: bool = False) -> dict[str, str]:
     """One case as a row."""
     noise = NOISES[seed % len(NOISES)]
     row = dict.fromkeys(COLUMNS, "") | {"kind": kind, "seed": f"{seed}", "noise": f"{noise}"}
@@ -92,17 +97,21 @@ def study(kind: str, seed: int) -> dict[str, str]:
         try:
             case = make_case(kind, seed, Path(folder), noise=noise)
             begin = time.process_time()
-            found = answer(case, Path(folder) / "gap")
+            found = answer(case, Path(folder) / "gap", both=both)
         except (OdometryError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
             spent = f"{time.process_time() - begin:.1f}"
             return row | {"score": "failed", "error": _line(error), "cpu_s": spent}
         return row | judged(case, found) | {"cpu_s": f"{time.process_time() - begin:.1f}"}
 
 
-def answer(case: Case, out: Path) -> dict[str, Any]:
-    """gap.json of a case."""
-    runs = [Run.read(folder) for folder in (case.measured, case.calibration, case.holdout)]
-    write_gap(find_gap(runs[:1], runs[1:2], runs[2:]), out)
+def answer(case: Case, out: Path, *, both: bool = False) -> dict[str, Any]:
+    """gap.json of a case; where both runs with the effect are measured, pieces are held out."""
+    measured, calibration, holdout = (
+        [Run.read(folder)] for folder in (case.measured, case.calibration, case.holdout)
+    )
+    if both:
+        measured, holdout = [*measured, *holdout], []
+    write_gap(find_gap(measured, calibration, holdout), out)
     result: dict[str, Any] = json.loads((out / "gap.json").read_text(encoding="utf-8"))
     return result
 

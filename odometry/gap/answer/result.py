@@ -89,7 +89,7 @@ class Equivalent:
 
 @dataclass(frozen=True)
 class Closing:
-    """A gap before and after, beside what noise explains [m]."""
+    """A gap before and after, beside what noise explains."""
 
     before: Gap
     after: Gap
@@ -115,7 +115,7 @@ class GapResult:
     location : Location
         Where the gap was before any effect was added.
     measured, holdout : Closing
-        On the measured runs, fitted; and on those held out.
+        Of positions on the measured runs, fitted; and on those held out.
     rivals : tuple of Rival
     calibration : Calibration
         The base model.
@@ -133,6 +133,9 @@ class GapResult:
         The held-out windows with poses that are left out after, if there are any.
     faults : tuple of (run, Finding)
         What `check` warns of in the same recordings, where it was asked.
+    by_turns : tuple of (Closing, Closing), optional
+        The two of headings or of the gyroscope, by which all is judged where positions show no gap
+        on held-out data and these do.
     """
 
     verdict: str
@@ -152,6 +155,12 @@ class GapResult:
     refusals: tuple[Refusal, ...] = ()
     holdout_before: tuple[DenseWindows, ...] = ()
     faults: tuple[RunFinding, ...] = ()
+    by_turns: tuple[Closing, Closing] | None = None
+
+    @property
+    def judged(self) -> tuple[Closing, Closing]:
+        """Measured and held out, by the measure that shows the gap."""
+        return self.by_turns or (self.measured, self.holdout)
 
     @property
     def depends_on(self) -> tuple[str, ...]:

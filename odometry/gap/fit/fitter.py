@@ -1,6 +1,6 @@
 """Fit effects, and what is uncertain of the base, to measured runs."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Collection, Hashable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -175,6 +175,28 @@ class Fitter:
         hypothesis = Hypothesis(self.calibration, self.measured, effects)
         nothing = np.zeros(len(values), dtype=np.bool_)
         return derived(hypothesis, Found(values, hypothesis.rows(values)), nothing)
+
+    def rise_without(self, fit: Fitted, place: int, names: Collection[str]) -> float:
+        """By how much chi-squared rises where some parameters of one effect do nothing.
+
+        All others are fitted anew.
+        """
+        effects = tuple(added.effect for added in fit.effects)
+        hypothesis = Hypothesis(self.calibration, self.measured, effects)
+        base = replace(self.calibration.uncertain, base=fit.base).values
+        pinned, values = [np.zeros(len(base), dtype=np.bool_)], [base]
+        for number, added in enumerate(fit.effects):
+            parameters = added.effect.parameters
+            own = np.array(
+                [number == place and p.name in names for p in parameters], dtype=np.bool_
+            )
+            absent = [0.0 if p.absent is None else p.absent for p in parameters]
+            pinned.append(own)
+            values.append(np.where(own, absent, added.values))
+        held = hypothesis.held(np.concatenate(pinned))
+        start = np.concatenate(values)
+        found = least_cost(hypothesis, [start], held, np.ones(len(start), dtype=np.bool_))
+        return found.cost - float(fit.chi_squared.sum()) - fit.base_moved
 
     def linear_losses(self, fit: Fitted, candidates: Sequence[Residual]) -> FloatArray:
         """Chi-squared (C,) that each candidate leaves on windows not fitted, to first order.

@@ -27,7 +27,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import Gap, gap_m, gap_of
+from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
 
 
 class Standing(Search):
@@ -103,11 +103,12 @@ class Standing(Search):
         fit, part_s = found.fitted, self.config.part_s
         believed, scenes = self.fitter.calibration, self.fitter.measured.scenes
         effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
-        after = gap_of(fit.base, effects, held_out, part_s)
-        before_m = gap_m(believed.base, (), held_out)
+        measure = self.floor.measure
+        after = gap_of(fit.base, effects, held_out, part_s, measure)
+        before = root_mean_square(believed.base, (), held_out, measure)
         if after.value <= self.held_floor.high:
             return after, 1.0
-        return after, (before_m - after.value) / (before_m - self.held_floor.value)
+        return after, (before - after.value) / (before - self.held_floor.value)
 
     def _most(self, names: Sequence[Effect]) -> float:
         """Share of an excess that these need to close where they leave what is not noise."""
@@ -177,13 +178,18 @@ class Standing(Search):
             self.fitter.measured.scenes,
             self.fitter.calibration,
         )
-        at_first = gap_of(believed, (), held_out, self.config.part_s)
+        measure = self.floor.measure
+        at_first = gap_of(believed, (), held_out, self.config.part_s, measure)
         reasons = [
             within_noise(at_first, self.held_floor, self.config),
-            raises_measured(self._believed_gap(), self._gap(fit)),
+            raises_measured(self._believed_gap(), self._gap(fit), measure),
             *(
                 closes_held_out(
-                    (base, effects[: len(less)]), (fit.base, effects), held_out, self.config
+                    (base, effects[: len(less)]),
+                    (fit.base, effects),
+                    held_out,
+                    self.config,
+                    measure,
                 )
                 for base, less in pairs
             ),

@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.effects.time_course import FromAMoment
@@ -27,11 +26,14 @@ from odometry.gap.name.verdict import (
     is_abrupt,
     is_by_its_essence,
     is_even,
+    is_most_of,
     is_of_stamps,
     is_special,
     is_sure_of_its_essence,
 )
-from odometry.gap.prepare.statistic import gap_m
+from odometry.gap.prepare.statistic import root_mean_square
+
+PART = 0.02  # of the squares of what a name does: less is left by a function that can do the same
 
 
 def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
@@ -48,6 +50,10 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
         if not reason:
             continue
         search.refuse(effect, reason)
+        if instead is None and reason == closes_without_essence(
+            search.fitter, alone, place, search.config
+        ):
+            search.without_essence.add(effect.name)
         others = [name for name in names if name is not effect]
         if not others:
             return replace(found, steps=())
@@ -75,15 +81,19 @@ def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) ->
     added = fit.effects[place]
     if not added.effect.essential:
         return ""
-    closed = is_by_its_essence(without_essence(fitter, fit, place), added, config)
-    return closed or is_sure_of_its_essence(added, _deviations(fit, place), config)
+    closed = closes_without_essence(fitter, fit, place, config)
+    if closed:
+        return closed
+    rise = fitter.rise_without(fit, place, added.effect.essential)
+    return is_sure_of_its_essence(added, rise / max(1.0, fitter.spread(fit)), config)
 
 
-def _deviations(fit: Fitted, place: int) -> FloatArray:
-    """Standard deviations of the values of one effect."""
-    first = sum(len(one.values) for one in fit.effects[:place])
-    variances = np.diag(fit.covariance)[first : first + len(fit.effects[place].values)]
-    return np.sqrt(np.maximum(variances, 0.0))
+def closes_without_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:
+    """Why an effect is not what makes it what it is: it closes as much without."""
+    added = fit.effects[place]
+    if not added.effect.essential:
+        return ""
+    return is_by_its_essence(without_essence(fitter, fit, place), added, config)
 
 
 def without_essence(fitter: Fitter, fit: Fitted, place: int) -> float:
@@ -157,19 +167,33 @@ def smooth_in_place(
         return None
     if names.effects[place].effect.slow and closes_less(search, fits[best], names):
         return None
+    is_part = _is_part_of(fitter, names, place, fits[best])
+    if is_most_of(closed, cost_of(before) - cost, is_part, config):
+        return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
     still = (cost - cost_of(both)) / closed
     return best if still < config.least_beside else None
 
 
+def _is_part_of(fitter: Fitter, names: Fitted, place: int, instead: Fitted) -> bool:
+    """Whether the smooth function of a fit, its last effect, can do what a name does."""
+    others = (*names.effects[:place], *names.effects[place + 1 :])
+    done = fitter.measured.rows(names.base, names.effects)
+    done = done - fitter.measured.rows(names.base, others)
+    function = instead.effects[-1]
+    columns = fitter.design(instead).jacobian[: len(done), -len(function.values) :]
+    left = done - columns @ np.linalg.lstsq(columns, done, rcond=None)[0]
+    return bool(left @ left < PART * (done @ done))
+
+
 def closes_less(search: Search, one: Fitted, other: Fitted) -> bool:
     """Whether one fit leaves more of the gap on held-out data than another."""
     fitted, believed = search.fitter.measured.scenes, search.fitter.calibration
-    gaps_m = []
+    gaps = []
     for fit in (one, other):
         of_runs = with_own_moments(fit.base, fit.effects, search.held_out, fitted, believed)
-        gaps_m.append(gap_m(fit.base, *of_runs))
-    return gaps_m[0] > gaps_m[1]
+        gaps.append(root_mean_square(fit.base, *of_runs, search.floor.measure))
+    return gaps[0] > gaps[1]
 
 
 def _fit(fitter: Fitter, effects: Sequence[Added]) -> Fitted:

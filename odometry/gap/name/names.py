@@ -58,7 +58,8 @@ def explained(
         found = _better(search, found, options)
     shares = shares_of_motion(scenes, fitter.calibration.base, config)
     stood = search.that_stand(_names_first(search, found), (*smooth, *shares))
-    return _tried_again(search, of_names, stood, (*smooth, *shares))
+    stood = _tried_again(search, of_names, stood, (*smooth, *shares))
+    return _of_the_others(search, stood, quick, (*smooth, *shares))
 
 
 def _tried_again(
@@ -70,12 +71,31 @@ def _tried_again(
     function may cost less on the runs that it was fitted to.
     """
     by_contact = any(effect.slow for effect in names.effects)
-    if not by_contact or not all(isinstance(effect, Residual) for effect in stood.effects):
+    if not by_contact or not _nameless(stood):
         return stood
     again = search.that_stand(names, smooth)
-    if all(isinstance(effect, Residual) for effect in again.effects):
+    if _nameless(again):
         return stood
     return stood if closes_less(search, again.fitted, stood.fitted) else again
+
+
+def _of_the_others(
+    search: Standing, stood: Explanation, candidates: Sequence[Effect], smooth: Sequence[Residual]
+) -> Explanation:
+    """Names of the others, where one closed the same without what makes it that effect.
+
+    A robot that turns less throughout is no curvature, and another set of ICRs.
+    """
+    if not search.without_essence or not _nameless(stood):
+        return stood
+    others = [one for one in candidates if one.name not in search.without_essence]
+    again = by_parts(search, search.stepwise(others), others)
+    again = search.that_stand(replace(again, first=stood.first), smooth)
+    return stood if _nameless(again) else again
+
+
+def _nameless(found: Explanation) -> bool:
+    return all(isinstance(effect, Residual) for effect in found.effects)
 
 
 def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:

@@ -22,13 +22,17 @@ from odometry.gap.name.verdict import (
     is_resolved,
     is_unbeaten,
 )
-from odometry.gap.prepare.statistic import Gap, gap_m, gap_of
+from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
 from odometry.windows.dense import DenseWindows
 
 
 @dataclass
 class Search:
-    """Adds effects one by one where they pay."""
+    """Adds effects one by one where they pay.
+
+    `floor` and `held_floor` are of the measure by which all is judged. `without_essence` are names
+    that were refused as they close the same without what makes them these effects.
+    """
 
     fitter: Fitter
     start: Fitted
@@ -38,6 +42,7 @@ class Search:
     config: GapConfig
     progress: Callable[[], None]
     refusals: dict[str, Refusal] = field(default_factory=dict)
+    without_essence: set[str] = field(default_factory=set)
 
     def stepwise(
         self, candidates: Sequence[Effect], begun: Explanation | None = None
@@ -147,7 +152,8 @@ class Search:
     @cached_property
     def is_above(self) -> bool:
         """Whether the gap on held-out data is surely above its noise floor."""
-        gap = gap_of(self.fitter.calibration.base, (), self.held_out, self.config.part_s)
+        base, part_s = self.fitter.calibration.base, self.config.part_s
+        gap = gap_of(base, (), self.held_out, part_s, self.floor.measure)
         return gap.low > self.held_floor.high
 
     @cached_property
@@ -156,11 +162,12 @@ class Search:
         believed = (self.fitter.calibration.base, ())
         moved = (self.start.base, ())
         return self._left(self.start) and not closes_held_out(
-            believed, moved, self.held_out, self.config
+            believed, moved, self.held_out, self.config, self.floor.measure
         )
 
     def _gap(self, fit: Fitted) -> float:
-        return gap_m(fit.base, fit.effects, self.fitter.measured.scenes)
+        scenes = self.fitter.measured.scenes
+        return root_mean_square(fit.base, fit.effects, scenes, self.floor.measure)
 
     def best_earner(self, judged: Sequence[Judged], before: Fitted) -> Judged | None:
         """Of most evidence among those that earn a name, if none that is refused beats it."""
@@ -196,7 +203,7 @@ class Search:
         share = self.config.least_share if before.effects else self.config.first_share
         noise = self.fitter.measured.expected
         excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
-        closed_m = self._gap(before) - one.gap_after
+        closed_m = self._gap(before) - self._gap(one.fitted)
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = before.cost - one.fitted.cost
         if before.effects and not isinstance(one.effect, Residual):

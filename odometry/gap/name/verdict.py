@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect
 from odometry.effects.base_model import Base
 from odometry.effects.by_side import DelayBySide
@@ -25,7 +24,15 @@ from odometry.gap.locate.predictors import Predictor
 from odometry.gap.locate.region_words import noun_of
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import run_of
-from odometry.gap.prepare.statistic import SEED, Gap, drawn_gaps, squared_errors, sure_sum
+from odometry.gap.prepare.statistic import (
+    SEED,
+    Gap,
+    Measure,
+    drawn_gaps,
+    root_mean_square,
+    squared_errors,
+    sure_sum,
+)
 from odometry.windows.dense import DenseWindows
 
 
@@ -39,25 +46,25 @@ class Refusal:
 
 
 def within_noise(held_out: Gap, floor: Gap, config: GapConfig) -> str:
-    """Whether the gap on held-out data, before anything is added, is surely above the noise floor.
-
-    By the lower bound of a difference of two values that have intervals of their own (Zou and
-    Donner 2008, Statistics in Medicine 27, 1693).
-    """
-    unsure_m = float(np.hypot(held_out.value - held_out.low, floor.high - floor.value))
-    if held_out.value - floor.value > config.above_floor * unsure_m:
+    """Whether the gap on held-out data before anything is added is surely above the noise floor."""
+    unsure = held_out.doubt_above(floor)
+    if held_out.value - floor.value > config.above_floor * unsure:
         return ""
+    noun, unit = held_out.measure.noun, held_out.measure.unit
     return (
-        f"the gap on held-out data, {held_out.value:.3g} m, is not surely above the noise floor "
-        f"of {floor.value:.3g} m: the difference is known to {unsure_m:.2g} m"
+        f"the {noun} on held-out data, {held_out.value:.3g} {unit}, is not surely above the noise "
+        f"floor of {floor.value:.3g} {unit}: the difference is known to {unsure:.2g} {unit}"
     )
 
 
-def raises_measured(before_m: float, after_m: float) -> str:
+def raises_measured(before: float, after: float, measure: Measure = Measure.POSITION) -> str:
     """Whether the gap on the runs that effects were fitted to falls with them."""
-    if after_m < before_m:
+    if after < before:
         return ""
-    return f"the gap on the measured runs rises with it, from {before_m:.2g} to {after_m:.2g} m"
+    return (
+        f"the {measure.noun} on the measured runs rises with it, from {before:.2g} to {after:.2g} "
+        f"{measure.unit}"
+    )
 
 
 def closes_held_out(
@@ -65,20 +72,26 @@ def closes_held_out(
     after: tuple[Base, Sequence[Added]],
     held_out: Sequence[DenseWindows],
     config: GapConfig,
+    measure: Measure = Measure.POSITION,
 ) -> str:
     """Whether the gap on held-out data is less after than before, surely.
 
-    It must not be greater, and the paired interval of 95 % of the difference must lie above zero:
-    that of the gap, that of the mean error, which a few windows in which a model fails do not
-    decide, or the sum without the pieces that gain most.
+    It must not be greater, nor that of positions, and the paired interval of 95 % of the difference
+    must lie above zero: that of the gap, that of the mean error, which a few windows in which a
+    model fails do not decide, or the sum without the pieces that gain most.
     """
+    if measure is not Measure.POSITION:
+        was, now = (root_mean_square(*of, held_out, Measure.POSITION) for of in (before, after))
+        farther = config.no_farther if measure is Measure.GYROSCOPE else 0.0
+        if now > was * (1 + farther):
+            return _worse(was, now, Measure.POSITION)
     squares = [
-        np.concatenate([squared_errors(base, effects, scene) for scene in held_out])
+        np.concatenate([squared_errors(base, effects, scene, measure) for scene in held_out])
         for base, effects in (before, after)
     ]
     was, now = (float(np.sqrt(of.mean())) for of in squares)
     if now >= was:
-        return f"the gap on held-out data gets worse with it, from {was:.3g} to {now:.3g} m"
+        return _worse(was, now, measure)
     rng = np.random.default_rng(SEED)
     kinds = (*squares, *(np.sqrt(of) for of in squares))
     means = drawn_gaps(kinds, held_out, config.part_s, rng) ** 2
@@ -87,7 +100,17 @@ def closes_held_out(
     of_pieces = np.asarray(np.bincount(piece, weights=squares[0] - squares[1]), dtype=np.float64)
     if (lows > 0).any() or sure_sum(of_pieces, config.trimmed) > 0:
         return ""
-    return f"on held-out data the gap goes from {was:.3g} to {now:.3g} m, which may be chance"
+    return (
+        f"on held-out data the {measure.noun} goes from {was:.3g} to {now:.3g} {measure.unit}, "
+        "which may be chance"
+    )
+
+
+def _worse(was: float, now: float, measure: Measure) -> str:
+    return (
+        f"the {measure.noun} on held-out data gets worse with it, from {was:.3g} to {now:.3g} "
+        f"{measure.unit}"
+    )
 
 
 def base_left_calibration(fit: Fitted, free: int, config: GapConfig) -> bool:
@@ -153,9 +176,9 @@ def closes_the_most(
     if share_closed >= config.least_of_rest or noise:
         return ""
     return (
-        f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data and leaves "
-        f"{gap.value:.2g} m there, and {spread:.1f} times the chi-squared of noise: not the cause, "
-        "or not the only one"
+        f"it closes {100 * max(share_closed, 0.0):.0f} % of the {gap.measure.noun} on held-out "
+        f"data and leaves {gap.value:.2g} {gap.measure.unit} there, and {spread:.1f} times the "
+        "chi-squared of noise: not the cause, or not the only one"
     )
 
 
@@ -203,21 +226,26 @@ def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
     )
 
 
-def is_sure_of_its_essence(added: Added, deviations: FloatArray, config: GapConfig) -> str:
-    """Whether one of the parameters that make a name what it is surely differs from none.
+def is_sure_of_its_essence(added: Added, rise: float, config: GapConfig) -> str:
+    """Whether the parameters that make a name what it is surely differ from none.
 
-    `deviations` (P,) are the standard deviations of all its values.
+    `rise` is that of chi-squared, in units of what is left a degree of freedom, where they are none
+    and all others are fitted anew: the interval of one alone is wide where another does nearly the
+    same.
     """
-    values = zip(added.effect.parameters, added.values, deviations, strict=True)
-    essential = [
-        abs(value - p.absent) / max(deviation, np.finfo(float).tiny)
-        for p, value, deviation in values
-        if p.name in added.effect.essential and p.absent is not None
-    ]
-    if not essential or max(essential) > config.sure:
+    if rise > config.sure**2:
         return ""
     names = ", ".join(added.effect.essential)
     return f"{names}, which makes it this effect, cannot be distinguished from none"
+
+
+def is_most_of(closed: float, by_function: float, is_part: bool, config: GapConfig) -> bool:
+    """Whether a name is the main part of a smooth function that does more in its place.
+
+    `is_part`: the function can do what the name does, as one of a tread's share, of anything, is a
+    wheel scale where it is constant. What it does beyond that is something else beside the name.
+    """
+    return is_part and closed >= config.main_part * by_function
 
 
 def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:

@@ -76,11 +76,11 @@ def ends_of(
     return Ends(motion, variance, leeway, numbered_pieces(scenes, part_s))
 
 
-def mean_variance_m2(scenes: Sequence[DenseWindows], calibration: Calibration) -> float:
-    """Of the position at the end of a window: what noise and an uncertain calibration make."""
+def mean_variances(scenes: Sequence[DenseWindows], calibration: Calibration) -> FloatArray:
+    """Of x, y and yaw (3,) at the end of a window: what noise and an uncertain calibration make."""
     noise = np.concatenate([end_variance(scene, calibration.noise) for scene in scenes])
     _, leeway = _with_leeway(calibration.base, (), scenes, calibration)
-    return float((noise + (leeway**2).sum(axis=-1))[:, :2].sum(axis=1).mean())
+    return np.asarray((noise + (leeway**2).sum(axis=-1)).mean(axis=0))
 
 
 def _with_leeway(

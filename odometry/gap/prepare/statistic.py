@@ -1,19 +1,20 @@
-"""The gap: an error of position over windows, and its interval."""
+"""The gap: an error over windows of position, heading or gyroscope, and its interval."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 from scipy.stats import t
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.corrected import Added, corrected_twist
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
-from odometry.gap.prepare.end_residuals import mean_variance_m2
+from odometry.gap.prepare.end_residuals import mean_variances
 from odometry.gap.prepare.pieces import numbered_pieces
-from odometry.gap.prepare.simulate import residuals
+from odometry.gap.prepare.simulate import residuals, rows_of_gyroscope
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import added_travel_m
 
@@ -22,23 +23,44 @@ SEED = 0
 MANY = 5  # pieces; of fewer even the largest and the least value hold less than 95 %
 
 
+class Measure(Enum):
+    """What an error is of, as sentences name it, and its unit."""
+
+    POSITION = ("gap", "m")
+    HEADING = ("heading error", "rad")
+    GYROSCOPE = ("error of the gyroscope", "rad")
+
+    @property
+    def noun(self) -> str:
+        """As sentences name it."""
+        return self.value[0]
+
+    @property
+    def unit(self) -> str:
+        """Of its root mean square."""
+        return self.value[1]
+
+
 @dataclass(frozen=True)
 class Gap:
-    """Root mean square [m] with a 95 % interval.
+    """Root mean square with a 95 % interval.
 
     Attributes
     ----------
     value : float
+        In the unit of `measure`.
     low, high : float
         Both are the value where `pieces` is one: there is no interval then.
     pieces : int
         Stretches of the runs from whose spread the interval comes.
+    measure : Measure
     """
 
     value: float
     low: float
     high: float
     pieces: int = MANY
+    measure: Measure = Measure.POSITION
 
     @property
     def has_interval(self) -> bool:
@@ -49,29 +71,68 @@ class Gap:
         """Whether the floor lies below the whole interval; never without one."""
         return self.has_interval and self.low > floor.value
 
+    def doubt_above(self, floor: "Gap") -> float:
+        """To what the difference to the floor is known.
 
-def squared_errors(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
-    """Squared error (K,) of the position at the end of each window [m^2]."""
-    ends = residuals(base, effects, scene)[:, -1, :2]
-    return np.asarray((ends**2).sum(axis=-1))
+        From both intervals to the lower bound of a difference of two values that have intervals of
+        their own (Zou and Donner 2008, Statistics in Medicine 27, 1693).
+        """
+        return float(np.hypot(self.value - self.low, floor.high - floor.value))
+
+
+def squared_errors(
+    base: Base,
+    effects: Sequence[Added],
+    scene: DenseWindows,
+    measure: Measure = Measure.POSITION,
+) -> FloatArray:
+    """Squared error (K,) at the end of each window [m^2 or rad^2].
+
+    Of its place, of its heading, or of the turn that the gyroscope reports, less its mean over the
+    run: a bias is none.
+    """
+    if measure is Measure.GYROSCOPE:
+        twists = corrected_twist(base, effects, scene.inputs)
+        turns = rows_of_gyroscope(twists, base, effects, scene).sum(axis=1)
+        return np.asarray((turns - turns.mean()) ** 2)
+    ends = residuals(base, effects, scene)[:, -1]
+    of = ends[:, :2] if measure is Measure.POSITION else ends[:, 2:]
+    return np.asarray((of**2).sum(axis=-1))
 
 
 def gap_of(
-    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows], part_s: float
+    base: Base,
+    effects: Sequence[Added],
+    scenes: Sequence[DenseWindows],
+    part_s: float,
+    measure: Measure = Measure.POSITION,
 ) -> Gap:
     """The gap over all windows; resampled are pieces of the runs, not windows."""
-    return _pooled([(squared_errors(base, effects, scene), scene) for scene in scenes], part_s)
+    errors = [(squared_errors(base, effects, scene, measure), scene) for scene in scenes]
+    return _pooled(errors, part_s, measure)
 
 
 def gap_m(base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]) -> float:
-    """The gap [m] without its interval, which takes longer."""
-    squares = [squared_errors(base, effects, scene) for scene in scenes]
+    """The gap of positions [m] without its interval, which takes longer."""
+    return root_mean_square(base, effects, scenes, Measure.POSITION)
+
+
+def root_mean_square(
+    base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows], measure: Measure
+) -> float:
+    """A gap [m or rad] without its interval."""
+    squares = [squared_errors(base, effects, scene, measure) for scene in scenes]
     return float(np.sqrt(np.concatenate(squares).mean()))
 
 
-def floor_of(held_back: Sequence[tuple[Base, DenseWindows]], part_s: float) -> Gap:
+def floor_of(
+    held_back: Sequence[tuple[Base, DenseWindows]],
+    part_s: float,
+    measure: Measure = Measure.POSITION,
+) -> Gap:
     """The noise floor: the same over stretches of calibration runs, each with its own base."""
-    return _pooled([(squared_errors(base, (), scene), scene) for base, scene in held_back], part_s)
+    errors = [(squared_errors(base, (), scene, measure), scene) for base, scene in held_back]
+    return _pooled(errors, part_s, measure)
 
 
 def floor_there(
@@ -82,21 +143,34 @@ def floor_there(
     Faster ones wander further in a window, and an uncertain calibration leads further off. Never
     less than a share of the way: stamps and held speeds are rounded even where nothing is noisy.
     """
-    here = mean_variance_m2([scene for _, scene in calibration.held_back], calibration)
-    ratio = float(np.sqrt(mean_variance_m2(scenes, calibration) / here))
-    travels_m = np.concatenate([added_travel_m(scene).sum(axis=1) for scene in scenes])
-    least_m = config.least_floor * float(np.sqrt(np.mean(travels_m**2)))
-    value, low, high = (max(ratio * of, least_m) for of in (floor.value, floor.low, floor.high))
-    return Gap(value, low, high, floor.pieces)
+    columns = slice(0, 2) if floor.measure is Measure.POSITION else slice(2, 3)
+    here, there = (
+        mean_variances(of, calibration)[columns].sum()
+        for of in ([scene for _, scene in calibration.held_back], scenes)
+    )
+    ratio = float(np.sqrt(there / here))
+    ways = np.concatenate([_way(scene, floor.measure) for scene in scenes])
+    least = config.least_floor * float(np.sqrt(np.mean(ways**2)))
+    value, low, high = (max(ratio * of, least) for of in (floor.value, floor.low, floor.high))
+    return replace(floor, value=value, low=low, high=high)
 
 
-def _pooled(errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float) -> Gap:
+def _way(scene: DenseWindows, measure: Measure) -> FloatArray:
+    """Travel [m] or turn [rad] (K,) of each window."""
+    if measure is Measure.POSITION:
+        return np.asarray(added_travel_m(scene).sum(axis=1))
+    return np.asarray(scene.measured[:, -1, 2])
+
+
+def _pooled(
+    errors: Sequence[tuple[FloatArray, DenseWindows]], part_s: float, measure: Measure
+) -> Gap:
     squares = np.concatenate([of for of, _ in errors])
     scenes, rng = [scene for _, scene in errors], np.random.default_rng(SEED)
     (drawn,) = drawn_gaps((squares,), scenes, part_s, rng)
     low, high = np.quantile(drawn, [0.025, 0.975])
     pieces = len(np.unique(numbered_pieces(scenes, part_s)))
-    return Gap(float(np.sqrt(squares.mean())), float(low), float(high), pieces)
+    return Gap(float(np.sqrt(squares.mean())), float(low), float(high), pieces, measure)
 
 
 def drawn_gaps(

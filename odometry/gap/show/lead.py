@@ -100,7 +100,7 @@ def _instead(equivalent: Sequence[Equivalent]) -> dict[str, list[str]]:
 
 
 def _nothing_named(result: GapResult, model: str) -> str:
-    held = result.holdout
+    held = result.judged[1]
     if _is_not_held_out(result):
         return (
             f"Something is missing in {model} on the measured runs (unknown), and held-out data "
@@ -138,10 +138,17 @@ def _refused(result: GapResult) -> str:
 
 
 def _how_sure(result: GapResult, share: Share | None) -> str:
-    held = result.holdout
+    held = result.judged[1]
+    what = f"The {held.before.measure.noun} on held-out data"
+    if result.by_turns:
+        apart, floor_m = (of.value for of in (result.holdout.before, result.holdout.noise_floor))
+        what = (
+            f"Positions hardly show it within {result.horizon_s:g} s ({metres(apart)}, by noise "
+            f"alone {metres(floor_m)}). {what}"
+        )
     floor = f"the noise floor is {with_interval(held.noise_floor)}"
     if not result.effects:
-        return f"The gap on held-out data is {with_interval(held.before)}; {floor}."
+        return f"{what} is {with_interval(held.before)}; {floor}."
     if all(isinstance(effect.added.effect, RoundedPositions) for effect in result.effects):
         rest = ""
         if held.before.is_above(held.noise_floor):
@@ -153,15 +160,15 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
         )
     change = f"from {with_interval(held.before)} to {with_interval(held.after)}"
     if held.after.value > held.before.value:
-        return f"The gap on held-out data gets worse, {change}: do not trust the name."
-    said = f"The gap on held-out data falls {change}; {floor}"
+        return f"{what} gets worse, {change}: do not trust the name."
+    said = f"{what} falls {change}; {floor}"
     if share is None:
         said += ", which the gap before hardly exceeds"
     else:
         said += f", so that {percent(share)} of the excess is closed"
     if held.after.is_above(held.noise_floor):
-        left = metres(held.after.value - held.noise_floor.value)
-        said += f" and {left} stays unexplained"
+        left = held.after.value - held.noise_floor.value
+        said += f" and {left:.2g} {held.after.measure.unit} stay unexplained"
     return f"{said}."
 
 
@@ -210,7 +217,7 @@ def _remedy(result: GapResult) -> str:
 
 def _is_not_held_out(result: GapResult) -> bool:
     """Whether the measured runs show what is unknown and the held-out data do not."""
-    held = result.holdout
+    held = result.judged[1]
     return (
         result.verdict == "unknown"
         and _is_doubtful(result)
@@ -220,7 +227,8 @@ def _is_not_held_out(result: GapResult) -> bool:
 
 def _is_doubtful(result: GapResult) -> bool:
     """Whether "none" is said of measured runs that noise does not explain."""
-    return result.measured.before.is_above(result.measured.noise_floor)
+    measured, _ = result.judged
+    return measured.before.is_above(measured.noise_floor)
 
 
 def _named(refused: Refusal) -> str:

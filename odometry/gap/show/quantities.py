@@ -34,9 +34,13 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
     held, kept = result.holdout_scenes, result.calibration.held_back
     base = result.calibration.base
     raw = result.holdout_before or held
-    before = np.concatenate([squared_errors(base, (), scene) for scene in raw])
-    after = np.concatenate([squared_errors(result.base, result.added, scene) for scene in held])
-    floor = np.concatenate([squared_errors(own, (), scene) for own, scene in kept])
+    closing = result.judged[1]
+    measure = closing.before.measure
+    before = np.concatenate([squared_errors(base, (), scene, measure) for scene in raw])
+    after = np.concatenate(
+        [squared_errors(result.base, result.added, scene, measure) for scene in held]
+    )
+    floor = np.concatenate([squared_errors(own, (), scene, measure) for own, scene in kept])
     rng = np.random.default_rng(SEED)
     if raw is held:
         gaps = drawn_gaps((before, after), held, part_s, rng)
@@ -45,14 +49,14 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
             [drawn_gaps((of,), s, part_s, rng) for of, s in ((before, raw), (after, held))]
         )
     (floors,) = drawn_gaps((floor,), [scene for _, scene in kept], part_s, rng)
-    floors *= result.holdout.noise_floor.value / np.sqrt(floor.mean())  # as it is on these runs
+    floors *= closing.noise_floor.value / np.sqrt(floor.mean())  # as it is on these runs
     excess = gaps[0] - floors
-    if result.holdout.before.value <= result.holdout.noise_floor.value:
+    if closing.before.value <= closing.noise_floor.value:
         return None
     if np.quantile(excess, 0.025) <= 0:
         return None
     low, high = np.quantile((gaps[0] - gaps[1]) / excess, [0.025, 0.975])
-    return Share(result.holdout.share_closed, float(low), float(high), result.holdout.before.pieces)
+    return Share(closing.share_closed, float(low), float(high), closing.before.pieces)
 
 
 def metres(value: float) -> str:
@@ -63,7 +67,7 @@ def metres(value: float) -> str:
 def with_interval(gap: Gap) -> str:
     """A gap and its 95 % interval, and from how many stretches that comes where they are few."""
     value, low, high = rounded(gap.value, gap.low, gap.high)
-    return f"{value} m ({_interval(f'{low} to {high}', gap.pieces)})"
+    return f"{value} {gap.measure.unit} ({_interval(f'{low} to {high}', gap.pieces)})"
 
 
 def percent(share: Share) -> str:

@@ -137,3 +137,17 @@ def test_why_a_file_cannot_be_read(tmp_path, text):
     (tmp_path / "odometry.csv").write_text(text)
     (found,) = check_recording(tmp_path).findings
     assert FILES[text] in found.cause
+
+
+def test_a_yaw_that_turns_round_where_the_robot_reverses_is_its_course():
+    at_s = 0.05 * np.arange(2400)
+    speed = 0.25 + 0.6 * np.sin(0.15 * at_s)
+    run = drive(speed, 0.25 * np.sin(0.3 * at_s))
+    assert warnings(run) == []
+    turned = np.interp(run.pose.stamps_s, at_s, speed) < 0
+    first = check_recording(yaw(run, lambda angle: angle + np.pi * turned)).findings[0]
+    assert first.name == "yaw_jumps"
+    assert first.cause.startswith("Yaw is the course over ground")
+    lost = np.cumsum(np.isin(np.arange(len(turned)), [150, 320]))
+    (found,) = check_recording(yaw(run, lambda angle: angle + np.pi * lost)).at(Level.WARNING)
+    assert found.cause.startswith("Yaw jumps")

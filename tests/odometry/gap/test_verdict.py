@@ -26,6 +26,7 @@ from odometry.gap.name.verdict import (
     closes_a_part,
     closes_held_out,
     closes_the_most,
+    is_most_of,
     is_of_stamps,
     is_resolved,
     is_sure_of_its_essence,
@@ -70,14 +71,18 @@ def test_a_loss_from_a_moment_at_an_end_of_the_runs_is_not_there(moment, there):
     assert (reason == "") == there
 
 
-@pytest.mark.parametrize(("deviation", "refused"), [(0.05, False), (0.2, True)])
-def test_a_name_is_sure_of_what_makes_it_what_it_is(deviation, refused):
-    """A curvature of 0.3 +- 0.05 is one, one of 0.3 +- 0.2 is a width that is everywhere alike."""
+@pytest.mark.parametrize(("rise", "refused"), [(9.1, False), (8.9, True), (-1.0, True)])
+def test_a_name_is_sure_of_what_makes_it_what_it_is(rise, refused):
     curvature = Added(Curvature(), np.array([1.2, 0.3, 0.5]))
-    reason = is_sure_of_its_essence(curvature, np.array([9.0, deviation, 9.0]), GapConfig())
-    assert ("beta_1" in reason) == refused
-    lag = Added(ActuatorLag(), np.array([0.2]))
-    assert not is_sure_of_its_essence(lag, np.array([9.0]), GapConfig())
+    reason = is_sure_of_its_essence(curvature, rise, GapConfig())
+    assert ("beta_1, which makes it this effect" in reason) == refused
+
+
+@pytest.mark.parametrize(
+    ("closed", "is_part", "stands"), [(91.0, True, True), (89.0, True, False), (99.0, False, False)]
+)
+def test_a_name_is_the_main_part_of_a_function_that_can_do_the_same(closed, is_part, stands):
+    assert is_most_of(closed, 100.0, is_part, GapConfig()) == stands
 
 
 def test_a_parameter_at_the_end_of_its_search_is_refused():
