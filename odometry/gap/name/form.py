@@ -33,6 +33,7 @@ from odometry.gap.name.verdict import (
 )
 from odometry.gap.prepare.statistic import root_mean_square
 
+WHOLE = 1.0  # of a motion, that an effect leaves where it does nothing
 PART = 0.02  # of the squares of what a name does: less is left by a function that can do the same
 
 
@@ -176,7 +177,9 @@ def smooth_in_place(
 
 
 def _is_part_of(fitter: Fitter, names: Fitted, place: int, instead: Fitted) -> bool:
-    """Whether the smooth function of a fit, its last effect, can do what a name does."""
+    """Whether a name is constant shares of a motion, as the last function of a fit may be."""
+    if not all(p.absent == WHOLE for p in names.effects[place].effect.parameters):
+        return False
     others = (*names.effects[:place], *names.effects[place + 1 :])
     done = fitter.measured.rows(names.base, names.effects)
     done = done - fitter.measured.rows(names.base, others)

@@ -137,8 +137,8 @@ def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
     if area <= config.events_told:
         return ""
     return (
-        f"{noun_of(variable)} predicts when its events are (area {area:.2f} under the receiver "
-        "operating characteristic): it depends on that, and does not come in bursts"
+        f"{noun_of(variable)} predicts when its events are (in {100 * area:.0f} % of pairs of a "
+        "moment within and one outside): it depends on that, and does not come in bursts"
     )
 
 

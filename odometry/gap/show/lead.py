@@ -38,6 +38,12 @@ def _missing(result: GapResult) -> str:
     named = [e for e in result.effects if not isinstance(e.added.effect, Residual)]
     if named:
         return _of_names(result, model, named, rest)
+    refused = [one.name for one in result.refusals if one.name != Residual.name]
+    if refused:
+        return (
+            f"Something is missing in {model} (unknown): it depends on {listed(rest)}, and no "
+            f"effect of the catalogue passed every test (the nearest: {refused[0]})."
+        )
     return (
         f"Something is missing in {model} that the catalogue of effects does not have "
         f"(unknown): it depends on {listed(rest)}."
@@ -165,10 +171,11 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
     if share is None:
         said += ", which the gap before hardly exceeds"
     else:
-        said += f", so that {percent(share)} of the excess is closed"
+        below = ", down to the noise" if share.value > 1 else ""
+        said += f", so that {percent(share)} of the excess is closed{below}"
     if held.after.is_above(held.noise_floor):
         left = held.after.value - held.noise_floor.value
-        said += f" and {left:.2g} {held.after.measure.unit} stay unexplained"
+        said += f" and {left:.2g} {held.after.measure.unit} stays unexplained"
     return f"{said}."
 
 

@@ -95,7 +95,9 @@ def _effect(effect: NamedEffect, number: int) -> str:
         f"on the measured runs the gap goes from {metres(effect.gap_before)} to "
         f"{metres(effect.gap_after)} ({strength})"
     )
-    if len(effect.added.values) > SHORT or isinstance(kind, Residual):
+    if isinstance(kind, Residual):
+        return f"{place}, and describes it by {len(effect.added.values)} numbers; {gap}."
+    if len(effect.added.values) > SHORT:
         return f"{place} with {len(effect.added.values)} parameters; {gap}."
     return f"{place}: {', '.join(parameter_words(effect))}; {gap}."
 
