@@ -96,7 +96,13 @@ SPOKEN: Mapping[str, Signed | Plain] = {
     "pitch": Signed("nose down", "nose up", "more than", "pitch", "degrees", DEGREES, 0.01),
     "heading": Plain("heading", "degrees", DEGREES),
     "lateral_acceleration": Signed(
-        "accelerated to the left", "accelerated to the right", "more than", "lateral acceleration", "m/s²", 1.0, 0.05
+        "accelerated to the left",
+        "accelerated to the right",
+        "more than",
+        "lateral acceleration",
+        "m/s²",
+        1.0,
+        0.05,
     ),
     "speed_difference": Plain("difference of tread speeds", "m/s"),
     "time": Plain("run time", "s", 1.0, "after", "before"),

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
-from odometry.gap.prepare.statistic import Measure, floor_of, floor_there, gap_of
+from odometry.gap.prepare.statistic import Gap, Measure, floor_of, floor_there, gap_of
 from odometry.windows.dense import DenseWindows
 
 
 def judged_by(
     known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, *, has_yaw: bool
 ) -> Measure:
-    """The first measure whose error on held-out data is surely above its noise floor; positions.
+    """Positions, but where these hardly differ from noise, and another measure surely does.
 
     Over two seconds a robot that turns otherwise may be off by less than the noise of its
     positions, and by many times that of its heading; a gyroscope at fault moves neither.
@@ -19,10 +19,20 @@ def judged_by(
     others = [Measure.HEADING] if has_yaw else []
     if all(scene.reported_turns is not None for scene in held_out):
         others.append(Measure.GYROSCOPE)
-    for measure in (Measure.POSITION, *others):
-        floor = floor_of(known.held_back, config.part_s, measure)
-        floor = floor_there(floor, known, held_out, config)
-        gap = gap_of(known.base, (), held_out, config.part_s, measure)
+    gap, floor = _on(known, held_out, config, Measure.POSITION)
+    if gap.value > max(config.hardly * floor.value, floor.value + gap.doubt_above(floor)):
+        return Measure.POSITION
+    for measure in others:
+        gap, floor = _on(known, held_out, config, measure)
         if gap.value - floor.value > config.turns_above * gap.doubt_above(floor):
             return measure
     return Measure.POSITION
+
+
+def _on(
+    known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, measure: Measure
+) -> tuple[Gap, Gap]:
+    """The gap and its noise floor."""
+    floor = floor_of(known.held_back, config.part_s, measure)
+    gap = gap_of(known.base, (), held_out, config.part_s, measure)
+    return gap, floor_there(floor, known, held_out, config)
