@@ -10,6 +10,7 @@ from odometry.errors import GapError
 from odometry.gap.answer.answer import (
     drives_apart,
     is_first,
+    leaves_most,
     named_effects,
     named_outliers,
     rivals_of,
@@ -136,6 +137,7 @@ def find_gap(
     judged = _closings(known, after, pairs, own_floor, config)
     believed_m = gap_m(known.base, (), fitted_scenes)
     named = named_effects(found, effects, believed_m)
+    only_outliers = outliers is not None and not named
     if outliers is not None:
         alone = gap_of(known.base, (), held_scenes, config.part_s)
         if is_first(closings[1], alone, config):
@@ -147,6 +149,8 @@ def find_gap(
     if rounding is not None:
         named = (rounding, *named)
     verdict = named[0].added.effect.name if named else verdict_of(found, judged[1])
+    if only_outliers and rounding is None and leaves_most(closings[1], config):
+        verdict = "unknown"
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
     return GapResult(

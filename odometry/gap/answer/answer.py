@@ -83,6 +83,12 @@ def is_first(held_out: Closing, without: Gap, config: GapConfig) -> bool:
     return held_out.before.value - without.value >= config.least_of_rest * closed_m
 
 
+def leaves_most(held_out: Closing, config: GapConfig) -> bool:
+    """Whether most of the excess on held-out data stays, surely above the noise floor."""
+    surely = held_out.after.low > held_out.noise_floor.high
+    return surely and held_out.share_closed < config.least_of_rest
+
+
 def drives_apart(
     found: Explanation,
     candidates: Sequence[Judged],

@@ -21,8 +21,7 @@ from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.search import Search
-from odometry.gap.name.verdict import (
+from odometry.gap.name.form_gates import (
     is_abrupt,
     is_by_its_essence,
     is_even,
@@ -31,6 +30,7 @@ from odometry.gap.name.verdict import (
     is_special,
     is_sure_of_its_essence,
 )
+from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import root_mean_square
 
 WHOLE = 1.0  # of a motion, that an effect leaves where it does nothing

@@ -15,12 +15,14 @@ from odometry.gap.fit.effect_values import is_the_effect
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.name.candidates import contact_effects, of_the_same_robot
 from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.form_gates import (
+    is_resolved,
+    is_unbeaten,
+)
 from odometry.gap.name.verdict import (
     Refusal,
     base_left_calibration,
     closes_held_out,
-    is_resolved,
-    is_unbeaten,
 )
 from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
 from odometry.windows.dense import DenseWindows

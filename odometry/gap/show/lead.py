@@ -56,9 +56,10 @@ def _of_names(
     """Of effects that have a name, beside what is unknown and depends on the `rest`."""
     names = listed([f"{e.added.in_words} ({e.added.effect.name})" for e in named])
     if result.verdict == "unknown":
+        cause = f"it depends on {listed(rest)}" if rest else "nothing that was recorded explains it"
         return (
-            f"Something is missing in {model} (unknown): it depends on {listed(rest)}; a smaller "
-            f"part of the gap is {names}."
+            f"Something is missing in {model} (unknown): {cause}; a smaller part of the gap is "
+            f"{names}."
         )
     if rest:
         names += f", and something unknown that depends on {listed(rest)}"

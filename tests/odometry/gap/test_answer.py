@@ -13,6 +13,7 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.answer.answer import (
     drives_apart,
     is_first,
+    leaves_most,
     named_effects,
     rivals_of,
     verdict_of,
@@ -137,3 +138,12 @@ def test_no_drive_is_proposed_beside_unknown():
     candidate = SimpleNamespace(effect=SKID, fitted=None, evidence=5.0)
     beside = (Equivalent(SKID.name, "unknown", "another drive"),)
     assert drives_apart(explained(), [candidate], beside, None, None) == ()
+
+
+@pytest.mark.parametrize(
+    ("after_m", "low_m", "most"), [(0.5, 0.2, True), (0.3, 0.2, False), (0.5, 0.05, False)]
+)
+def test_poses_left_out_are_no_answer_where_most_stays(after_m, low_m, most):
+    """Of 0.6 m over a floor of 0.1 m: less than half, surely above the floor."""
+    held = Closing(Gap(0.6, 0.3, 0.9), Gap(after_m, low_m, 0.7), Gap(0.1, 0.08, 0.12))
+    assert leaves_most(held, GapConfig()) == most

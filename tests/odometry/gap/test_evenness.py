@@ -10,7 +10,9 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.evenness import Unevenness, between_pieces, unevenness
 from odometry.gap.fit.fitter import Fitter
-from odometry.gap.name.verdict import is_even
+from odometry.gap.name.form_gates import (
+    is_even,
+)
 from odometry.gap.prepare.measured import measured_of
 
 PIECES = np.repeat(np.arange(60), 5)

@@ -15,9 +15,14 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.name import form
 from odometry.gap.name.form import lacks_essence, slow_course_in_place, without_essence
+from odometry.gap.name.form_gates import (
+    is_by_its_essence,
+)
 from odometry.gap.name.general import shares_of_motion
 from odometry.gap.name.unnamed import variable_of_events
-from odometry.gap.name.verdict import come_by_themselves, is_by_its_essence
+from odometry.gap.name.verdict import (
+    come_by_themselves,
+)
 from odometry.gap.prepare.measured import measured_of
 
 CONFIG = GapConfig()

@@ -21,17 +21,19 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit.effect_values import is_the_effect, is_there, within_bounds
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.locate.predictors import Predictor
-from odometry.gap.name.verdict import (
-    base_left_calibration,
-    closes_a_part,
-    closes_held_out,
-    closes_the_most,
+from odometry.gap.name.form_gates import (
     is_most_of,
     is_of_stamps,
     is_resolved,
     is_sure_of_its_essence,
     is_the_main_part,
     is_unbeaten,
+)
+from odometry.gap.name.verdict import (
+    base_left_calibration,
+    closes_a_part,
+    closes_held_out,
+    closes_the_most,
     leaves_no_structure,
     leaves_noise,
     raises_measured,
