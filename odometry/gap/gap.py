@@ -118,14 +118,16 @@ def find_gap(
     )
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
-    measure = judged_by(known, held_scenes, config, has_yaw=not headings.found)
-    own_floor = floor_of(known.held_back, config.part_s, measure)
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
-        floors = (
-            floor_there(own_floor, known, fitted_scenes, config),
-            floor_there(own_floor, known, held_scenes, config),
-        )
-        found = explained(fitter, held_scenes, floors, config, _counting(bar))
+        for measure in judged_by(known, held_scenes, config, has_yaw=not headings.found):
+            own_floor = floor_of(known.held_back, config.part_s, measure)
+            floors = (
+                floor_there(own_floor, known, fitted_scenes, config),
+                floor_there(own_floor, known, held_scenes, config),
+            )
+            found = explained(fitter, held_scenes, floors, config, _counting(bar))
+            if found.names:
+                break
     fit = found.fitted
     base = fit.base if found.steps or found.base_closes else known.base
     effects, held_scenes = with_own_moments(base, fit.effects, held_scenes, fitted_scenes, known)

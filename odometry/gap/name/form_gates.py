@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.effects.base import CommandEffect
 from odometry.effects.by_side import DelayBySide
 from odometry.effects.corrected import Added, delay_s
@@ -135,4 +136,14 @@ def is_even(of: Unevenness, config: GapConfig) -> str:
     return (
         f"its strength differs by {100 * of.share:.0f} % from one stretch of the runs to the next: "
         "something else comes and goes"
+    )
+
+
+def no_wheel_grows(factors: FloatArray, config: GapConfig) -> str:
+    """Whether no wheel is larger from a moment on: a tyre is lost, none grows."""
+    if float(np.max(factors)) <= 1 + config.largest_growth:
+        return ""
+    return (
+        f"its wheels are {np.max(factors):.3g} times as large from a moment on: what is lost is no "
+        "tyre and no track"
     )

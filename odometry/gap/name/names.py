@@ -20,7 +20,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import closes_less, lacks_essence
 from odometry.gap.name.general import general_candidates, shares_of_motion
 from odometry.gap.name.search import Search
-from odometry.gap.prepare.statistic import Gap
+from odometry.gap.prepare.statistic import Gap, root_mean_square
 from odometry.windows.dense import DenseWindows
 
 MANY = 5  # parameters of an effect that two others may share
@@ -59,7 +59,7 @@ def explained(
     shares = shares_of_motion(scenes, fitter.calibration.base, config)
     stood = search.that_stand(_names_first(search, found), (*smooth, *shares))
     stood = _tried_again(search, of_names, stood, (*smooth, *shares))
-    return _of_the_others(search, stood, quick, (*smooth, *shares))
+    return _largest_first(search, _of_the_others(search, stood, quick, (*smooth, *shares)))
 
 
 def _tried_again(
@@ -92,6 +92,24 @@ def _of_the_others(
     again = by_parts(search, search.stepwise(others), others)
     again = search.that_stand(replace(again, first=stood.first), smooth)
     return stood if _nameless(again) else again
+
+
+def _largest_first(search: Search, found: Explanation) -> Explanation:
+    """Names in the order of the gap that comes back without each: the first is the verdict.
+
+    Effects are added by evidence, which noise that one of them makes smaller raises as well.
+    """
+    names = [effect for effect in found.effects if not isinstance(effect, Residual)]
+    if len(names) < 2 or len(names) < len(found.effects):
+        return found
+    without = {}
+    for name in names:
+        others = [effect for effect in names if effect is not name]
+        fit = search.fitter.fit(others, found.fitted.effects)
+        scenes, measure = search.fitter.measured.scenes, search.floor.measure
+        without[name] = root_mean_square(fit.base, fit.effects, scenes, measure)
+    order = sorted(names, key=lambda name: -without[name])
+    return found if order == names else search.in_order(found, order)
 
 
 def _nameless(found: Explanation) -> bool:

@@ -10,23 +10,25 @@ from odometry.windows.dense import DenseWindows
 
 def judged_by(
     known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, *, has_yaw: bool
-) -> Measure:
+) -> tuple[Measure, ...]:
     """Positions, but where these hardly differ from noise, and another measure surely does.
 
     Over two seconds a robot that turns otherwise may be off by less than the noise of its
-    positions, and by many times that of its heading; a gyroscope at fault moves neither.
+    positions, and by many times that of its heading; a gyroscope at fault moves neither. By its
+    error alone nothing is missing in a model: positions follow it, where it gives nothing a name.
     """
     others = [Measure.HEADING] if has_yaw else []
     if all(scene.reported_turns is not None for scene in held_out):
         others.append(Measure.GYROSCOPE)
     gap, floor = _on(known, held_out, config, Measure.POSITION)
     if gap.value > max(config.hardly * floor.value, floor.value + gap.doubt_above(floor)):
-        return Measure.POSITION
+        return (Measure.POSITION,)
     for measure in others:
         gap, floor = _on(known, held_out, config, measure)
-        if gap.value - floor.value > config.turns_above * gap.doubt_above(floor):
-            return measure
-    return Measure.POSITION
+        surely = gap.value - floor.value > config.turns_above * gap.doubt_above(floor)
+        if surely and gap.value > config.turns_times * floor.value:
+            return (measure,) if measure is Measure.HEADING else (measure, Measure.POSITION)
+    return (Measure.POSITION,)
 
 
 def _on(

@@ -28,6 +28,7 @@ from odometry.gap.name.form_gates import (
     is_sure_of_its_essence,
     is_the_main_part,
     is_unbeaten,
+    no_wheel_grows,
 )
 from odometry.gap.name.verdict import (
     base_left_calibration,
@@ -266,3 +267,9 @@ def test_a_clock_beside_late_treads_needs_a_gyroscope(heard):
 @pytest.mark.parametrize(("of_names", "stands"), [(63.0, False), (77.0, True), (100.0, True)])
 def test_a_name_is_the_main_part_beside_a_smooth_function(of_names, stands):
     assert (is_the_main_part(of_names, 100.0, CONFIG) == "") == stands
+
+
+@pytest.mark.parametrize(("left", "right", "stands"), [(0.9, 1.0, True), (1.06, 1.06, False)])
+def test_no_wheel_grows_from_a_moment_on(left, right, stands):
+    reason = no_wheel_grows(np.array([left, right]), CONFIG)
+    assert (reason == "") == stands
