@@ -10,7 +10,6 @@ from matplotlib.ticker import FuncFormatter
 from odometry.arrays import FloatArray
 from odometry.gap.answer.result import GapResult
 from odometry.gap.prepare.statistic import Gap, squared_errors
-from odometry.gap.show.quantities import metres
 from odometry.report.figure import LINE_STYLES, LineStyle, save_figure
 from odometry.report.html import Picture
 from odometry.report.labels import broken_beyond
@@ -29,11 +28,13 @@ LINEAR_TO = 10.0  # of evidence: from there on it is very strong
 
 def closing_picture(result: GapResult, folder: Path) -> Picture:
     """The gap before and after with 95 % intervals, beside the noise floor."""
-    closings = {"held out": result.holdout, "measured": result.measured}
+    measured, held_out = result.judged
+    closings = {"held out": held_out, "measured": measured}
+    measure = held_out.before.measure
 
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((0.2, 0.24, 0.76, 0.68))
-        floor = result.holdout.noise_floor
+        floor = held_out.noise_floor
         axes.axvspan(floor.low, floor.high, color=FLOOR, alpha=0.3, linewidth=0)
         axes.axvline(floor.value, color=FLOOR, linewidth=1.2)
         labels = []
@@ -48,7 +49,7 @@ def closing_picture(result: GapResult, folder: Path) -> Picture:
         ends = [gap.high for c in closings.values() for gap in (c.before, c.after, c.noise_floor)]
         axes.set_xlim(0.0, ROOM * max(ends))
         axes.grid(visible=True, axis="x")
-        axes.set_xlabel("RMS position error [m]")
+        axes.set_xlabel(f"RMS {measure.error} [{measure.unit}]")
         axes.annotate(
             "noise floor",
             (floor.value, 1.0),
@@ -63,7 +64,7 @@ def closing_picture(result: GapResult, folder: Path) -> Picture:
     return Picture(
         save_figure(folder / "gap_closing.png", (WIDTH_IN, 2.6), draw),
         "The gap before and after the effects were added, with the noise floor.",
-        f"RMS position error over windows of {result.horizon_s:g} s before and after the effects "
+        f"RMS {measure.error} over windows of {result.horizon_s:g} s before and after the effects "
         "were added (and the model moved within what its calibration leaves open). Bars and grey "
         "band: 95 % intervals by a bootstrap of pieces of the runs.",
     )
@@ -149,7 +150,7 @@ def _draw_gap(axes: Axes, row: float, gap: Gap, style: LineStyle) -> None:
     axes.plot([gap.low, gap.high], [row, row], color=style.colour, linewidth=2.2)
     axes.plot(gap.value, row, "o", color=style.colour, markersize=6)
     axes.annotate(
-        metres(gap.value),
+        f"{gap.value:.2g} {gap.measure.unit}",
         (gap.high, row),
         (6.0, 0.0),
         textcoords="offset points",

@@ -25,10 +25,10 @@ def closing_grid(result: GapResult, share: Share | None) -> Grid:
     error = "position error"
     if result.by_turns:
         fitted, held_out = result.by_turns
-        noun = held_out.before.measure.noun
-        rows.append((f"held out, {noun}", *_closing(held_out), held))
-        rows.append((f"measured, {noun}", *_closing(fitted), "-"))
-        error = f"position error, and {noun}, by which the effects are judged,"
+        other = held_out.before.measure.error
+        rows.append((f"held out, {other}", *_closing(held_out), held))
+        rows.append((f"measured, {other}", *_closing(fitted), "-"))
+        error = f"position error, and {other}, by which the effects are judged,"
     header = ("windows", "before", "after", "noise floor", "excess closed")
     caption = f"RMS {error} over windows of {result.horizon_s:g} s, with 95 % intervals."
     return Grid(header, rows, caption)

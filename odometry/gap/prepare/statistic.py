@@ -26,9 +26,9 @@ MANY = 5  # pieces; of fewer even the largest and the least value hold less than
 class Measure(Enum):
     """What an error is of, as sentences name it, and its unit."""
 
-    POSITION = ("gap", "m")
-    HEADING = ("heading error", "rad")
-    GYROSCOPE = ("error of the gyroscope", "rad")
+    POSITION = ("gap", "position error", "m")
+    HEADING = ("heading error", "heading error", "rad")
+    GYROSCOPE = ("error of the gyroscope", "error of the turn that the gyroscope reports", "rad")
 
     @property
     def noun(self) -> str:
@@ -36,9 +36,14 @@ class Measure(Enum):
         return self.value[0]
 
     @property
+    def error(self) -> str:
+        """What its root mean square is of."""
+        return self.value[1]
+
+    @property
     def unit(self) -> str:
         """Of its root mean square."""
-        return self.value[1]
+        return self.value[2]
 
 
 @dataclass(frozen=True)

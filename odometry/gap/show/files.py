@@ -20,7 +20,7 @@ from odometry.effects.time_course import InBursts
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.answer.result import Closing, GapResult, NamedEffect
 from odometry.gap.locate.locate import Region
-from odometry.gap.prepare.statistic import Gap, Measure
+from odometry.gap.prepare.statistic import Gap
 from odometry.gap.show.words import moves_of
 from odometry.io.files import atomic_write
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
@@ -32,11 +32,6 @@ OF_ONE_RUN = (
     *(Terrain, ResidualOfEachRun, OfEachRun, ReferenceStep, ReferenceOutliers),
     RoundedPositions,
 )
-MEASURED = {
-    Measure.POSITION: "m, RMS position error",
-    Measure.HEADING: "rad, RMS heading error",
-    Measure.GYROSCOPE: "rad, RMS error of the turn that the gyroscope reports",
-}
 LEAST_LATENCY_S = 5e-3  # less is nothing that a model must know
 
 
@@ -198,6 +193,7 @@ def _region(region: Region) -> dict[str, Any]:
 
 
 def _closing(closing: Closing, horizon_s: float) -> dict[str, Any]:
+    measure = closing.before.measure
     return {
         "before": closing.before.value,
         "after": closing.after.value,
@@ -206,7 +202,7 @@ def _closing(closing: Closing, horizon_s: float) -> dict[str, Any]:
         "after_interval": _ends(closing.after),
         "stretches": closing.before.pieces,
         "share_closed": _finite(closing.share_closed),
-        "unit": f"{MEASURED[closing.before.measure]} over {horizon_s:g} s windows",
+        "unit": f"{measure.unit}, RMS {measure.error} over {horizon_s:g} s windows",
     }
 
 
