@@ -161,9 +161,12 @@ class Camera:
 
     @cached_property
     def height_m(self) -> float:
-        """Height of the camera above the ground [m], of a mount or of a homography."""
-        forward, left, there = (self.ground_to_ray / np.linalg.norm(self.ground_to_ray[:, 0])).T
-        return float(abs(np.cross(forward, left) @ there))
+        """Height of the camera above the ground [m], of a mount or of a homography.
+
+        H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z.
+        """
+        scale = float(np.mean(np.linalg.norm(self.ground_to_ray[:, :2], axis=0)))
+        return float(-np.linalg.det(self.ground_to_ray) / scale**3)
 
     def ground_to_pixels(self, points: ArrayLike) -> FloatArray:
         """Where ground points appear in the raw (distorted) image (Chen 2023 eq. 17).

@@ -180,7 +180,7 @@ def pose_outages(evidence: Evidence) -> Iterator[Finding]:
 
 LEAST_YAW_JUMP_RAD = np.radians(25)
 HALF_TURN_RAD = np.radians(30)  # a jump that is off by less is half a turn
-REVERSES_S = np.array([-2.0, -0.3, 0.3, 2.0])  # from a jump: before it, and after it
+WAY_M = 0.05  # from a jump on, of the treads' travel that says which way the robot drives
 AS_COURSE = (
     "Yaw is the course over ground, which turns round where the robot reverses: not the heading "
     "(a receiver without a second antenna or a compass)",
@@ -239,8 +239,10 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
 
 
 def _reverses(evidence: Evidence, stamp_s: float) -> bool:
-    """Whether the robot drives the other way soon after a stamp than it did before."""
-    at_s = np.clip(stamp_s + REVERSES_S, evidence.stamps_s[0], evidence.stamps_s[-1])
-    of = evidence.integrals
-    before_m, after_m = np.diff(of.left_m(at_s) + of.right_m(at_s))[[0, -1]]
-    return bool(before_m * after_m < 0)
+    """Whether the robot drives the other way after a stamp than it did before, with any pause."""
+    of, here = evidence.integrals, int(np.searchsorted(evidence.stamps_s, stamp_s))
+    travel_m = (of.left_m(evidence.stamps_s) + of.right_m(evidence.stamps_s)) / 2
+    ahead_m = travel_m - travel_m[min(here, len(travel_m) - 1)]
+    far = np.abs(ahead_m) > WAY_M
+    before, after = np.flatnonzero(far[:here]), np.flatnonzero(far[here:]) + here
+    return bool(len(before) and len(after) and ahead_m[before[-1]] * ahead_m[after[0]] > 0)

@@ -13,7 +13,8 @@ from terrain.checks.image_files import MOST_BYTES, spread
 from terrain.errors import ImageError
 from terrain.image_size import stated_size
 
-PAIRS = 32  # of images that are compared, some milliseconds each
+PAIRS, FEWEST_PAIRS = 32, 16  # of images that are compared, some milliseconds each
+MOST_PIXELS = 400_000_000  # that are decoded, unless there are the fewest pairs: some seconds
 APART_M, APART_S = 0.12, 1.0  # travel of the treads between them, if it takes no longer
 MOVING_M = 0.02  # with less travel an image shows the same as the one before
 WIDTH_PX = 320  # larger images are reduced to it: their details say no more of the motion
@@ -36,6 +37,8 @@ class GroundSteps:
 
     Attributes
     ----------
+    rows : (P, 2)
+        Of images.csv.
     stamps_s : (P, 2)
         Of both images.
     steps : (P, 3)
@@ -44,6 +47,7 @@ class GroundSteps:
         Pairs of images that were compared.
     """
 
+    rows: IntArray
     stamps_s: FloatArray
     steps: FloatArray
     tried: int
@@ -54,17 +58,18 @@ class GroundSteps:
 
 def ground_steps(run: Run, camera: Camera) -> GroundSteps:
     """Match the terrain of pairs of images, spread over the motion of a run."""
-    pairs = _pairs(run)
+    pairs = _pairs(run, camera)
     seen = {row: _features(run, camera, row) for row in np.unique(pairs).tolist()}
     off_m = OFF * camera.height_m
     found = [_step(seen[first], seen[second], off_m) for first, second in pairs.tolist()]
     known = [place for place, step in enumerate(found) if step is not None]
     stamps_s = np.empty((0, 2)) if run.images is None else run.images.stamps_s[pairs[known]]
     steps = np.array([found[place] for place in known], dtype=np.float64)
-    return GroundSteps(stamps_s.reshape(-1, 2), steps.reshape(-1, 3), len(pairs))
+    stamps_s = stamps_s.reshape(-1, 2)
+    return GroundSteps(pairs[known].reshape(-1, 2), stamps_s, steps.reshape(-1, 3), len(pairs))
 
 
-def _pairs(run: Run) -> IntArray:
+def _pairs(run: Run, camera: Camera) -> IntArray:
     """Rows (P, 2) of images.csv: an image, and the first one after some travel of the treads."""
     if run.images is None or len(run.images) < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -75,7 +80,8 @@ def _pairs(run: Run) -> IntArray:
     second = np.minimum(np.searchsorted(travel_m, travel_m[:-1] + APART_M), latest)
     moves = (second > first) & (travel_m[second] - travel_m[:-1] > MOVING_M)
     chosen = np.flatnonzero(moves)
-    chosen = chosen[spread(len(chosen), PAIRS)] if len(chosen) else chosen
+    most = max(FEWEST_PAIRS, min(PAIRS, MOST_PIXELS // (2 * int(np.prod(camera.image_size)))))
+    chosen = chosen[spread(len(chosen), most)] if len(chosen) else chosen
     return np.column_stack([first[chosen], second[chosen]])
 
 

@@ -20,6 +20,7 @@ PLACE_M, PLACE, TURN_RAD, TURN = 0.01, 0.05, 0.02, 0.1
 MEDIAN = 1.2  # of the larger of two such deviations, by chance
 ROUNDS = 5  # of reweighting
 BLOCKS = 8  # of the run, each left out once (jackknife)
+TINY = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +31,10 @@ class Agreement:
     ----------
     gains : (G,) of complex
         Steps by images over those of the treads, their size and direction.
-    turns : (G,)
-        Turns by images over those of the robot.
+    gain_sds : (G,)
+        Standard deviations of their real and imaginary parts.
+    turns, turn_sds : (G,)
+        Turns by images over those of the robot, and their standard deviations.
     off : (G, P)
         What is left of a step and a turn, the larger of both in standard deviations.
     losses : (G, P)
@@ -39,7 +42,9 @@ class Agreement:
     """
 
     gains: Complex
+    gain_sds: FloatArray
     turns: FloatArray
+    turn_sds: FloatArray
     off: FloatArray
     losses: FloatArray
 
@@ -47,26 +52,38 @@ class Agreement:
 def agreement(
     steps: FloatArray, travel_m: FloatArray, turn_rad: FloatArray, noise: float
 ) -> Agreement:
-    """Compare steps (P, 3) by images with travel (G, P) and turn (G, P) of the robot."""
+    """Compare steps (P, 3) by images with travel (G, P) and turn (G, P) of the robot.
+
+    A robot turns about its ICR and not about its origin, and a camera may stand elsewhere than it
+    is said to: both swing the step by the turn, about a place that is fitted beside the gain.
+    """
     place, yaw = steps[:, 0] + 1j * steps[:, 1], steps[:, 2].astype(np.complex128)
     moved = travel_m * np.sinc(turn_rad / (2 * np.pi)) * np.exp(0.5j * turn_rad)
+    swung = np.exp(1j * turn_rad) - 1.0
     place_sd = noise * (PLACE_M + PLACE * np.abs(place))
     turn_sd = noise * (TURN_RAD + TURN * np.abs(yaw))
     off, aside = np.zeros(moved.shape), np.zeros(moved.shape)
     for _ in range(ROUNDS):
-        gains = _slopes(place, moved, (1 + off**2) * place_sd**2)
-        turns = _slopes(yaw, turn_rad.astype(np.complex128), (1 + aside**2) * turn_sd**2)
-        off = np.abs(place - gains[:, None] * moved) / place_sd
-        aside = np.abs(yaw - turns[:, None] * turn_rad) / turn_sd
+        of_place, of_turn = 1 / ((1 + off**2) * place_sd**2), 1 / ((1 + aside**2) * turn_sd**2)
+        gains, swings, gain_sds = _slopes(place, moved, swung, of_place)
+        squares = (of_turn * turn_rad**2).sum(axis=1) + TINY
+        turns = (of_turn * turn_rad * yaw.real).sum(axis=1) / squares
+        left = place - gains[:, None] * moved - swings[:, None] * swung
+        off, aside = np.abs(left) / place_sd, np.abs(yaw - turns[:, None] * turn_rad) / turn_sd
     losses = np.log1p(off**2) + np.log1p(aside**2)
-    return Agreement(gains, turns.real, np.maximum(off, aside), losses)
+    return Agreement(gains, gain_sds, turns, 1 / np.sqrt(squares), np.maximum(off, aside), losses)
 
 
-def _slopes(values: Complex, by: Complex, variances: FloatArray) -> Complex:
-    """Slopes (G,) of values (P,) over others (G, P), through the origin."""
-    squares = (np.abs(by) ** 2 / variances).sum(axis=1)
-    products = (by.conj() * values / variances).sum(axis=1)
-    return np.asarray(products / np.maximum(squares, 1e-12))
+def _slopes(
+    values: Complex, one: Complex, other: Complex, weights: FloatArray
+) -> tuple[Complex, Complex, FloatArray]:
+    """Weighted slopes (G,) of values (P,) over two others (G, P), and the first's deviation."""
+    a, b = (weights * np.abs(one) ** 2).sum(axis=1), (weights * np.abs(other) ** 2).sum(axis=1)
+    both = (weights * one.conj() * other).sum(axis=1)
+    of_one, of_other = ((weights * by.conj() * values).sum(axis=1) for by in (one, other))
+    known = a - np.abs(both) ** 2 / (b + TINY) + TINY
+    slope = (of_one - both * of_other / (b + TINY)) / known
+    return slope, (of_other - both.conj() * slope) / (b + TINY), np.asarray(1 / np.sqrt(known))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +127,11 @@ class ImageMotion:
         """Place of the lag that fits best."""
         return int(self.losses.argmin())
 
+    @property
+    def is_within(self) -> bool:
+        """Whether the best lag is none of the ends of the search."""
+        return 0 < self.best < len(self.lags_s) - 1
+
     @cached_property
     def lag_sd_s(self) -> float:
         """Standard deviation of that lag, by leaving out one stretch of the run after the other."""
@@ -123,7 +145,7 @@ class ImageMotion:
     def reversed_loss(self) -> float:
         """Loss where the last image was taken first."""
         stamps_s = self.run.images.stamps_s if self.run.images is not None else np.zeros(1)
-        back_s = stamps_s[0] + stamps_s[-1] - self.steps.stamps_s
+        back_s = stamps_s[::-1][self.steps.rows]
         return self._loss_of(*self._robot(back_s[None]))
 
     @cached_property

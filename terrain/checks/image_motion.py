@@ -7,13 +7,12 @@ import numpy as np
 from odometry.checks.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.ground_steps import ground_steps
+from terrain.checks.ground_steps import FEWEST_PAIRS, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 
-FEWEST = 16  # pairs of images
 EXPLAINED = 0.75  # of the loss of even motion: what the treads may leave, where images show them
 BETTER = 10.0  # of the loss [nats]: what a lag or the reverse order must gain
-SURE = 4.0  # standard deviations of the lag
+SURE = 4.0  # standard deviations, of the lag, of the step and of the turn by images
 EDGE_M = 0.1  # travel in the time of the lag: labels that are off by less hardly matter
 LARGER = 1.2  # of a step by images over that of the treads, or the inverse: treads may slip
 ASIDE_RAD, BACKWARDS_DEG = float(np.radians(10.0)), 150.0
@@ -30,13 +29,14 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
         Why nothing could be checked, or "".
     """
     steps = ground_steps(run, camera)
-    if len(steps) < FEWEST:
+    if len(steps) < FEWEST_PAIRS:
         return [], (
             "whether images show the motion of the treads: the same terrain was recognised in "
-            f"{len(steps)} of {steps.tried} pairs of images, expected {FEWEST} or more"
+            f"{len(steps)} of {steps.tried} pairs of images, expected {FEWEST_PAIRS} or more"
         )
     motion = ImageMotion(run, steps)
-    if min(float(motion.losses[motion.best]), motion.reversed_loss) > EXPLAINED * motion.even_loss:
+    loss = min(float(motion.losses[motion.best]), motion.reversed_loss)
+    if loss > EXPLAINED * motion.even_loss or not motion.is_within:
         return [], (
             "whether images show the motion of the treads: they do not agree within "
             f"{LARGEST_LAG_S:g} s (images of another drive, a camera that rocks, or a robot that "
@@ -57,14 +57,19 @@ def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:
         )
         return
     yield from _late(motion)
-    gain, turn = motion.by_lag.gains[motion.best], motion.by_lag.turns[motion.best]
-    if turn < MIRRORED and abs(np.angle(gain)) < np.pi / 4:
-        yield _mirrored(float(turn))
+    found, best = motion.by_lag, motion.best
+    gain, turn = complex(found.gains[best]), float(found.turns[best])
+    unsure, unsure_turn = SURE * float(found.gain_sds[best]), SURE * float(found.turn_sds[best])
+    size, aside_rad = abs(gain), float(np.angle(gain))
+    if size <= unsure:
         return
-    if abs(np.angle(gain)) > ASIDE_RAD:
-        yield _aside(float(np.degrees(np.angle(gain))))
-    if not 1 / LARGER < abs(gain) < LARGER:
-        yield _larger(float(abs(gain)), height_m)
+    if turn + unsure_turn < MIRRORED and abs(aside_rad) < np.pi / 4:
+        yield _mirrored(turn)
+        return
+    if abs(aside_rad) - unsure / size > ASIDE_RAD:
+        yield _aside(float(np.degrees(aside_rad)))
+    if size - unsure > LARGER or size + unsure < 1 / LARGER:
+        yield _larger(size, height_m)
 
 
 def _late(motion: ImageMotion) -> Iterator[Finding]:

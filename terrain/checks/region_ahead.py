@@ -85,16 +85,9 @@ def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
         except CameraError:
             continue
         if isinstance(straight_ahead(camera, reading.robot), Region):
-            usual = USUAL_HEIGHT_M[0] <= height_m(camera) <= USUAL_HEIGHT_M[1]
+            usual = USUAL_HEIGHT_M[0] <= camera.height_m <= USUAL_HEIGHT_M[1]
             found.append((not usual, reading))
     return [reading for _, reading in sorted(found, key=lambda pair: pair[0])]
-
-
-def height_m(camera: Camera) -> float:
-    """Height above the terrain: H = s K R [e1 e2 -c] has the determinant -s^3 fx fy c_z."""
-    rays = np.linalg.solve(camera.matrix, camera.ground_to_image)
-    scale = float(np.mean(np.linalg.norm(rays[:, :2], axis=0)))
-    return float(-np.linalg.det(rays) / scale**3)
 
 
 def _readings(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:

@@ -139,9 +139,12 @@ def test_why_a_file_cannot_be_read(tmp_path, text):
     assert FILES[text] in found.cause
 
 
-def test_a_yaw_that_turns_round_where_the_robot_reverses_is_its_course():
+@pytest.mark.parametrize("pause", [0.0, 0.3])
+def test_a_yaw_that_turns_round_where_the_robot_reverses_is_its_course(pause):
+    """Without a pause, and standing where it would be slow, for up to three seconds."""
     at_s = 0.05 * np.arange(2400)
     speed = 0.25 + 0.6 * np.sin(0.15 * at_s)
+    speed = np.where(np.abs(speed) < pause / 2, 0.0, speed)
     run = drive(speed, 0.25 * np.sin(0.3 * at_s))
     assert warnings(run) == []
     turned = np.interp(run.pose.stamps_s, at_s, speed) < 0

@@ -5,7 +5,6 @@ import pytest
 
 from odometry.checks.finding import Level
 from terrain.camera import Camera
-from terrain.checks.region_ahead import height_m
 
 X, Y, Z, ROLL, PITCH, YAW = 0.2, 0.0, 0.55, 0.01, 0.85, 0.02
 PLACE = [X, Y, Z]
@@ -125,6 +124,6 @@ def test_a_robot_that_reverses_is_no_fault_of_the_camera(faulty):
 
 def test_height_comes_back_from_a_homography(world):
     camera = Camera.from_table(world.camera)
-    assert height_m(camera) == pytest.approx(Z)
+    assert camera.height_m == pytest.approx(Z)
     scaled = Camera.from_homography((160, 120), camera.matrix, [], -3 * camera.ground_to_image)
-    assert height_m(scaled) == pytest.approx(Z)
+    assert scaled.height_m == pytest.approx(Z)
