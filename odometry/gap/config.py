@@ -26,8 +26,7 @@ class GapConfig:
     held_back : int
         Without runs to hold out, one piece of so many is held back.
     least_evidence : float
-        A name needs this much evidence (twice the gain of log-likelihood, less the penalty), at
-        its lower bound of 95 %.
+        That a name needs (twice the gain of log-likelihood, less the penalty), as a lower bound.
     trimmed : int
         Pieces of the runs without which a gain must still be one.
     least_share : float
@@ -44,8 +43,7 @@ class GapConfig:
     near_bound : float
         In scales of a parameter: nearer to a bound than this it is at the bound.
     equivalent_margin : float
-        Of evidence: less does not decide between two candidates (a ratio of likelihoods
-        of twenty).
+        Of evidence: less does not decide between two (a ratio of likelihoods of twenty).
     least_of_rival : float
         Share of what a name gains that another must gain to be as near: it is not compared else.
     general_margin : float
@@ -59,11 +57,12 @@ class GapConfig:
         beats it. Beside a function that does the same it closes 0.1 at most.
     main_part : float
         Share of what a smooth function closes in the place of a name that is a part of it, which
-        the name must close to be its main part.
+        the name must close to be its main part. True wheel scales closed 0.93 and more.
     largest_growth : float
-        Share by which a wheel may be larger from a moment on, where another is smaller.
+        Share by which a wheel may seem larger from a moment on: twice what is left of a true one.
     no_farther : float
-        Share by which positions may be farther off beside a gyroscope at fault, which moves none.
+        Share by which positions, within their noise, may be farther off where headings or the
+        gyroscope are judged: true names moved them by 0.005, a tenth of their interval.
     unexplained : float
         Chi-squared a degree of freedom above which what is left is not noise.
     left_over, mostly_closed, contact_closed, bursts_closed : float
@@ -76,22 +75,17 @@ class GapConfig:
         In how many times its uncertainty of 95 % the gap on held-out data must be above the noise
         floor before anything is added. Of real recordings changed by hand, in windows where it was
         not, 4 of 7 names were wrong.
-    turns_above : float
+    turns_above, turns_times, hardly : float
         The same of headings and of the gyroscope, by which a gap is judged where positions are not
-        above their floor, or hardly.
-    turns_times : float
-        In how many times their floor these must be off as well. Of 75 runs without an effect seven
-        were above 1.4 times the floor, one (a gyroscope) above 2; with one that shows in headings
-        six are at 2.3 to 8 times.
-    hardly : float
-        In how many times their floor positions must be off to show a gap clearly.
+        above their floor, or by less than `hardly` times; and in how many times their floor these
+        must be off. Of 75 runs without an effect four show positions and one (a gyroscope) another
+        error so clearly by chance; of six whose effect headings show alone all are at 2.3 and more.
     least_held_out : float
         Share of the excess on held-out data that names must close. On development seeds right
         names close 0.22 at least, a loss of traction in the place of slippery patches 0.05.
     least_of_rest : float
-        Share of it that names must close where they leave more than `unexplained`. A drift in the
-        place of a clock that was set closed 0.43. And share of what an answer closes that poses
-        which were left out must close to be its first name.
+        Share of it that names must close where they leave more than `unexplained` (a drift in the
+        place of a clock that was set closed 0.43), and poses that were left out to be its verdict.
     least_of_all : float
         Share of what names and smooth functions close together that names must close alone.
     most_without : float
@@ -99,19 +93,18 @@ class GapConfig:
     most_beaten : float
         Share of what a name closes by which a candidate that is refused may close more.
     events_told : float
-        Area under the receiver operating characteristic with which a recorded variable may say
-        when events are. True bursts have 0.72 at most, a drive that is limited on one side 0.97.
+        Area under the curve (ROC) with which a recorded variable may say when events are. True
+        bursts have 0.72 at most, a drive that is limited on one side 0.97.
     uneven, uneven_probability : float
-        Standard deviation of the strength of a name between pieces of the runs, as a share of it,
-        above which it is no one strength; and the probability of such pieces by chance below
-        which that counts. Right names differ by 0.16 at most in simulation and by 0.25 on a real
-        recording, a constant delay in the place of a clock that was set by 0.37.
+        Spread of the strength of a name between pieces of the runs, as a share of it, above which
+        it is no one strength; and the probability by chance below which that counts. Right names
+        differ by 0.25 at most, a constant delay in the place of a clock that was set by 0.37.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float
         Share of the base's move that may be left where a name explains nothing but this move.
     contact_spread : float
-        Chi-squared per degree of freedom that quick forms must leave before slow ones are fitted.
+        Chi-squared a degree of freedom that quick forms must leave before slow ones are fitted.
     gyro_least_of_yaw : float
         Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
     gyro_bias_drift_rad_s : float
@@ -128,8 +121,7 @@ class GapConfig:
     least_range : float
         Range of a variable, in its unit, below which it explains nothing: less is rounding.
     least_odds, sure_odds : float
-        Odds at which a drive is proposed, better than even for the worse of two rivals; and those
-        at which no better drive is looked for.
+        Odds at which a drive is proposed, and those at which no better drive is looked for.
     least_tilt_rad : float
         Steepest terrain measured, below which no drive on a slope is proposed: nobody could
         find it.
@@ -222,6 +214,7 @@ class GapConfig:
             self,
             *("horizon_s", "part_s", "least_evidence", "least_excess", "sure", "near_bound"),
             *("equivalent_margin", "general_margin", "unexplained", "left_over", "contact_spread"),
+            *("turns_above", "turns_times", "hardly"),
             "uneven",
         )
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")

@@ -26,8 +26,8 @@ from odometry.gap.locate.locate import locate
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
-from odometry.gap.prepare.judged import judged_by
 from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.rounding import rounding_notes
 from odometry.gap.prepare.scenes import (
     alike,
@@ -119,14 +119,14 @@ def find_gap(
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
-        for measure in judged_by(known, held_scenes, config, has_yaw=not headings.found):
+        for measure in measures_of(known, held_scenes, config, has_yaw=not headings.found):
             own_floor = floor_of(known.held_back, config.part_s, measure)
             floors = (
                 floor_there(own_floor, known, fitted_scenes, config),
                 floor_there(own_floor, known, held_scenes, config),
             )
             found = explained(fitter, held_scenes, floors, config, _counting(bar))
-            if found.names:
+            if found.has_name:
                 break
     fit = found.fitted
     base = fit.base if found.steps or found.base_closes else known.base
@@ -136,22 +136,22 @@ def find_gap(
     befores = scenes if outliers is None else raw_scenes
     pairs = tuple(zip(befores, scenes, strict=True))
     closings = _closings(known, after, pairs, floor, config)
-    judged = _closings(known, after, pairs, own_floor, config)
+    shown = _closings(known, after, pairs, own_floor, config)
     believed_m = gap_m(known.base, (), fitted_scenes)
     named = named_effects(found, effects, believed_m)
     only_outliers = outliers is not None and not named
     if outliers is not None:
-        alone = gap_of(known.base, (), held_scenes, config.part_s)
-        if is_first(closings[1], alone, config):
+        alone = gap_of(known.base, (), held_scenes, config.part_s, measure)
+        if is_first(shown[1], alone, config):
             named = (named_outliers(outliers, closings[0].before.value, believed_m), *named)
         else:
             raw_m = gap_m(base, effects, raw_scenes[0])
             named = (*named, named_outliers(outliers, raw_m, closings[0].after.value))
     rounding = named_rounding(fitted_scenes, held_scenes, known, floor, config)
     if rounding is not None:
-        named = (rounding, *named)
-    verdict = named[0].added.effect.name if named else verdict_of(found, judged[1])
-    if only_outliers and rounding is None and leaves_most(closings[1], config):
+        named = (rounding, *named) if measure is Measure.POSITION else (*named, rounding)
+    verdict = named[0].added.effect.name if named else verdict_of(found, shown[1])
+    if only_outliers and rounding is None and leaves_most(shown[1], config):
         verdict = "unknown"
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
@@ -162,7 +162,7 @@ def find_gap(
         location=locate(known.base, (), fitted_scenes, floor.value, config, calibration=known),
         measured=closings[0],
         holdout=closings[1],
-        by_turns=judged if measure is not Measure.POSITION else None,
+        turns=shown if measure is not Measure.POSITION else None,
         rivals=rivals_of(found),
         calibration=known,
         base=base,

@@ -10,6 +10,7 @@ from matplotlib.ticker import FuncFormatter
 from odometry.arrays import FloatArray
 from odometry.gap.answer.result import GapResult
 from odometry.gap.prepare.statistic import Gap, squared_errors
+from odometry.gap.show.quantities import of_two_figures
 from odometry.report.figure import LINE_STYLES, LineStyle, save_figure
 from odometry.report.html import Picture
 from odometry.report.labels import broken_beyond
@@ -28,7 +29,7 @@ LINEAR_TO = 10.0  # of evidence: from there on it is very strong
 
 def closing_picture(result: GapResult, folder: Path) -> Picture:
     """The gap before and after with 95 % intervals, beside the noise floor."""
-    measured, held_out = result.judged
+    measured, held_out = result.closings
     closings = {"held out": held_out, "measured": measured}
     measure = held_out.before.measure
 
@@ -85,7 +86,8 @@ def time_picture(result: GapResult, folder: Path) -> Picture:
         for axes in panels:
             axes.set_ylim(0.0, highest)
         panels[-1].set_xlabel("run time [s]")
-        figure.supylabel("RMS position error [m]", fontsize=10)
+        measure = result.closings[1].before.measure
+        figure.supylabel(f"RMS {measure.error} [{measure.unit}]", fontsize=10)
         lines, names = panels[0].get_legend_handles_labels()
         figure.legend(lines, names, loc="lower left", ncols=3, frameon=False, fontsize=9)
         figure.subplots_adjust(
@@ -150,7 +152,7 @@ def _draw_gap(axes: Axes, row: float, gap: Gap, style: LineStyle) -> None:
     axes.plot([gap.low, gap.high], [row, row], color=style.colour, linewidth=2.2)
     axes.plot(gap.value, row, "o", color=style.colour, markersize=6)
     axes.annotate(
-        f"{gap.value:.2g} {gap.measure.unit}",
+        of_two_figures(gap),
         (gap.high, row),
         (6.0, 0.0),
         textcoords="offset points",
@@ -161,12 +163,13 @@ def _draw_gap(axes: Axes, row: float, gap: Gap, style: LineStyle) -> None:
 
 
 def _draw_over_time(axes: Axes, result: GapResult, scene: DenseWindows) -> None:
-    floor = result.holdout.noise_floor
+    floor = result.closings[1].noise_floor
     axes.axhspan(floor.low, floor.high, color=FLOOR, alpha=0.3, linewidth=0)
     axes.axhline(floor.value, color=FLOOR, linewidth=1.0, label="noise floor")
     for name, (base, effects) in result.stages.items():
         style = STAGES[name]
-        rms = rolling_rms(scene.start_s, squared_errors(base, effects, scene), ROLLING_S)
+        squares = squared_errors(base, effects, scene, floor.measure)
+        rms = rolling_rms(scene.start_s, squares, ROLLING_S)
         axes.plot(
             *broken_beyond(ROLLING_S / 2, scene.start_s, rms),
             marker=".",

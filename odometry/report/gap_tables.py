@@ -19,12 +19,12 @@ def closing_grid(result: GapResult, share: Share | None) -> Grid:
     """The gap before and after."""
     held = "-" if share is None else percent(share)
     rows = [
-        ("held out", *_closing(result.holdout), "-" if result.by_turns else held),
+        ("held out", *_closing(result.holdout), "-" if result.turns else held),
         ("measured, fitted", *_closing(result.measured), "-"),
     ]
     error = "position error"
-    if result.by_turns:
-        fitted, held_out = result.by_turns
+    if result.turns:
+        fitted, held_out = result.turns
         other = held_out.before.measure.error
         rows.append((f"held out, {other}", *_closing(held_out), held))
         rows.append((f"measured, {other}", *_closing(fitted), "-"))

@@ -106,7 +106,7 @@ def gap(
 
 
 def _print_result(result: "GapResult") -> None:
-    from odometry.gap.show.lead import listed
+    from odometry.gap.show.advice import listed
     from odometry.gap.show.words import sentences
 
     rows = [("effect", "form", "gap before [m]", "gap after [m]", "evidence")]

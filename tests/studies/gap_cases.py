@@ -122,7 +122,7 @@ def judged(case: Case, found: dict[str, Any]) -> dict[str, str]:
     verdict = found["verdict"]
     course = next((course for name, course in named if name == verdict), "")
     others = [(one["name"], "") for one in found["equivalent"]]
-    held = found["holdout"]
+    held = found["turns"]["holdout"] if found["turns"] else found["holdout"]
     share = held["share_closed"]
     return {
         "gyroscope": f"{int(case.gyroscope)}",
@@ -142,7 +142,7 @@ def judged(case: Case, found: dict[str, Any]) -> dict[str, str]:
         "before": f"{held['before']:.5f}",
         "after": f"{held['after']:.5f}",
         "floor": f"{held['noise_floor']:.5f}",
-        "worse": f"{int(bool(named) and held['after'] > held['before'])}",
+        "worse": f"{int(bool(named) and found['holdout']['after'] > found['holdout']['before'])}",
         "closed": "" if share is None else f"{share:.4f}",
     }
 

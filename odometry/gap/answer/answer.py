@@ -30,8 +30,8 @@ def verdict_of(found: Explanation, held_out: Closing) -> str:
     if found.names:
         return found.names[0]
     before, floor = held_out.before, held_out.noise_floor
-    least_m = before.value if found.refusals else before.low
-    return "unknown" if found.unexplained or least_m > floor.high else "none"
+    least = before.value if found.refusals else before.low
+    return "unknown" if found.unexplained or least > floor.high else "none"
 
 
 def named_effects(

@@ -133,7 +133,7 @@ class GapResult:
         The held-out windows with poses that are left out after, if there are any.
     faults : tuple of (run, Finding)
         What `check` warns of in the same recordings, where it was asked.
-    by_turns : tuple of (Closing, Closing), optional
+    turns : tuple of (Closing, Closing), optional
         The two of headings or of the gyroscope, by which all is judged where positions show no gap
         on held-out data and these do.
     """
@@ -155,12 +155,12 @@ class GapResult:
     refusals: tuple[Refusal, ...] = ()
     holdout_before: tuple[DenseWindows, ...] = ()
     faults: tuple[RunFinding, ...] = ()
-    by_turns: tuple[Closing, Closing] | None = None
+    turns: tuple[Closing, Closing] | None = None
 
     @property
-    def judged(self) -> tuple[Closing, Closing]:
+    def closings(self) -> tuple[Closing, Closing]:
         """Measured and held out, by the measure that shows the gap."""
-        return self.by_turns or (self.measured, self.holdout)
+        return self.turns or (self.measured, self.holdout)
 
     @property
     def depends_on(self) -> tuple[str, ...]:

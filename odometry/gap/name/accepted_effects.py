@@ -42,12 +42,12 @@ class Standing(Search):
         as far as they can, and their residuals may follow a course in time that is each run's own.
         """
         found = self._less_doubtful(self._of_their_form(found, smooth))
-        if not _named(found):
+        if not found.has_name:
             sudden = of_their_form(self, sudden_wheels(self, found), smooth)
             named = [one for one in (in_bursts(self, found), sudden) if one.steps]
             found = min([grown(self, found), *named], key=lambda one: one.cost)
         found = self._without_structure(self._standing(found, smooth), smooth)
-        if not _named(found) and (found.steps or self.unexplained() or self.is_above):
+        if not found.has_name and (found.steps or self.unexplained() or self.is_above):
             found = self._standing(with_course(self, found), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
         unexplained = not found.steps and self.unexplained()
@@ -78,7 +78,7 @@ class Standing(Search):
 
     def _without_structure(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without any name where all close little, or leave structure."""
-        if not _named(found):
+        if not found.has_name:
             return found
         left, share = self._held_out_left(found)
         if share >= self._most(found.effects):
@@ -197,10 +197,6 @@ class Standing(Search):
             ),
         ]
         return next((reason for reason in reasons if reason), "")
-
-
-def _named(found: Explanation) -> bool:
-    return any(not isinstance(effect, Residual) for effect in found.effects)
 
 
 def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from odometry.effects.base import Effect
+from odometry.effects.residual import Residual
 from odometry.gap.fit.contest import Judged, cost_of
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.name.verdict import Refusal
@@ -42,6 +43,11 @@ class Explanation:
     def fitted(self) -> Fitted:
         """With all effects."""
         return self.steps[-1].fitted if self.steps else self.start
+
+    @property
+    def has_name(self) -> bool:
+        """Whether an effect is none that stands for something unknown."""
+        return any(not isinstance(effect, Residual) for effect in self.effects)
 
     def with_step(self, step: Judged) -> "Explanation":
         """The same and one effect more."""

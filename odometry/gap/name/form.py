@@ -51,9 +51,7 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
         if not reason:
             continue
         search.refuse(effect, reason)
-        if instead is None and reason == closes_without_essence(
-            search.fitter, alone, place, search.config
-        ):
+        if not instead and closes_without_essence(search.fitter, alone, place, search.config):
             search.without_essence.add(effect.name)
         others = [name for name in names if name is not effect]
         if not others:

@@ -71,10 +71,10 @@ def _tried_again(
     function may cost less on the runs that it was fitted to.
     """
     by_contact = any(effect.slow for effect in names.effects)
-    if not by_contact or not _nameless(stood):
+    if not by_contact or stood.has_name:
         return stood
     again = search.that_stand(names, smooth)
-    if _nameless(again):
+    if not again.has_name:
         return stood
     return stood if closes_less(search, again.fitted, stood.fitted) else again
 
@@ -86,12 +86,12 @@ def _of_the_others(
 
     A robot that turns less throughout is no curvature, and another set of ICRs.
     """
-    if not search.without_essence or not _nameless(stood):
+    if not search.without_essence or stood.has_name:
         return stood
     others = [one for one in candidates if one.name not in search.without_essence]
     again = by_parts(search, search.stepwise(others), others)
     again = search.that_stand(replace(again, first=stood.first), smooth)
-    return stood if _nameless(again) else again
+    return again if again.has_name else stood
 
 
 def _largest_first(search: Search, found: Explanation) -> Explanation:
@@ -110,10 +110,6 @@ def _largest_first(search: Search, found: Explanation) -> Explanation:
         without[name] = root_mean_square(fit.base, fit.effects, scenes, measure)
     order = sorted(names, key=lambda name: -without[name])
     return found if order == names else search.in_order(found, order)
-
-
-def _nameless(found: Explanation) -> bool:
-    return all(isinstance(effect, Residual) for effect in found.effects)
 
 
 def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:

@@ -204,8 +204,8 @@ class Search:
             return False
         share = self.config.least_share if before.effects else self.config.first_share
         noise = self.fitter.measured.expected
-        excess_m = max(self._gap(self.start) - self.floor.value, 0.0)
-        closed_m = self._gap(before) - self._gap(one.fitted)
+        excess_of_gap = max(self._gap(self.start) - self.floor.value, 0.0)
+        closed_of_gap = self._gap(before) - self._gap(one.fitted)
         excess = max(self.start.cost - noise, self.config.least_excess * noise)
         closed = before.cost - one.fitted.cost
         if before.effects and not isinstance(one.effect, Residual):
@@ -217,7 +217,8 @@ class Search:
                 return True
             if not self._brings_back(one.fitted, before):
                 return False
-        return bool(closed_m > share * excess_m > 0 or closed > share * excess)
+        of_gap = closed_of_gap > share * excess_of_gap > 0
+        return bool(of_gap or closed > share * excess)
 
 
 def sparse_residual(fitter: Fitter, fit: Fitted) -> Residual:

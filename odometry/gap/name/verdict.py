@@ -71,14 +71,13 @@ def closes_held_out(
 ) -> str:
     """Whether the gap on held-out data is less after than before, surely.
 
-    It must not be greater, nor that of positions, and the paired interval of 95 % of the difference
-    must lie above zero: that of the gap, that of the mean error, which a few windows in which a
-    model fails do not decide, or the sum without the pieces that gain most.
+    It must not be greater, nor that of positions by more than a hundredth, and the paired interval
+    of 95 % of the difference must lie above zero: that of the gap, that of the mean error, which a
+    few windows in which a model fails do not decide, or the sum without the pieces that gain most.
     """
     if measure is not Measure.POSITION:
         was, now = (root_mean_square(*of, held_out, Measure.POSITION) for of in (before, after))
-        farther = config.no_farther if measure is Measure.GYROSCOPE else 0.0
-        if now > was * (1 + farther):
+        if now > was * (1 + config.no_farther):
             return _worse(was, now, Measure.POSITION)
     squares = [
         np.concatenate([squared_errors(base, effects, scene, measure) for scene in held_out])

@@ -145,12 +145,13 @@ def floor_there(
 ) -> Gap:
     """The noise floor as it would be on other runs.
 
-    Faster ones wander further in a window, and an uncertain calibration leads further off. Never
+    Faster ones wander further in a window, and an uncertain calibration leads further off; the
+    noise of a gyroscope is the same on all. Never
     less than a share of the way: stamps and held speeds are rounded even where nothing is noisy.
     """
-    columns = slice(0, 2) if floor.measure is Measure.POSITION else slice(2, 3)
+    columns = {Measure.POSITION: [0, 1], Measure.HEADING: [2]}.get(floor.measure)
     here, there = (
-        mean_variances(of, calibration)[columns].sum()
+        mean_variances(of, calibration)[columns].sum() if columns else 1.0
         for of in ([scene for _, scene in calibration.held_back], scenes)
     )
     ratio = float(np.sqrt(there / here))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from odometry.gap.answer.result import GapResult
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.statistic import Gap, gap_of
-from odometry.gap.show.quantities import metres
+from odometry.gap.show.quantities import of_two_figures
 
 
 def runs_differ(result: GapResult) -> str | None:
@@ -13,9 +13,11 @@ def runs_differ(result: GapResult) -> str | None:
 
     An effect that is fitted to all of them is too weak for the ones and too strong for the others.
     """
-    floor = result.measured.noise_floor
+    floor = result.closings[0].noise_floor
     gaps = {
-        scene.run.name: gap_of(result.calibration.base, (), [scene], GapConfig().part_s)
+        scene.run.name: gap_of(
+            result.calibration.base, (), [scene], GapConfig().part_s, floor.measure
+        )
         for scene in result.measured_scenes
         if len(scene)
     }
@@ -27,12 +29,12 @@ def runs_differ(result: GapResult) -> str | None:
         return None
     return (
         f"The runs differ: {_listed(with_gap)}, but {_listed(without)}, with a noise floor of "
-        f"{metres(floor.value)}. Run gap with {_names(list(with_gap))} alone."
+        f"{of_two_figures(floor)}. Run gap with {_names(list(with_gap))} alone."
     )
 
 
 def _listed(gaps: dict[str, Gap]) -> str:
-    return ", ".join(f"{name} {metres(of.value)}" for name, of in gaps.items())
+    return ", ".join(f"{name} {of_two_figures(of)}" for name, of in gaps.items())
 
 
 def _names(names: Sequence[str]) -> str:

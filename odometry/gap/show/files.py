@@ -98,10 +98,10 @@ def content_of(result: GapResult) -> dict[str, Any]:
             for one in result.next_drives
         ],
         "turns": None
-        if result.by_turns is None
+        if result.turns is None
         else {
             name: _closing(closing, result.horizon_s)
-            for name, closing in zip(("gap", "holdout"), result.by_turns, strict=True)
+            for name, closing in zip(("gap", "holdout"), result.turns, strict=True)
         },
     }
 

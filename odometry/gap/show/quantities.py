@@ -34,7 +34,7 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
     held, kept = result.holdout_scenes, result.calibration.held_back
     base = result.calibration.base
     raw = result.holdout_before or held
-    closing = result.judged[1]
+    closing = result.closings[1]
     measure = closing.before.measure
     before = np.concatenate([squared_errors(base, (), scene, measure) for scene in raw])
     after = np.concatenate(
@@ -62,6 +62,11 @@ def held_out_share(result: GapResult, part_s: float = GapConfig.part_s) -> Share
 def metres(value: float) -> str:
     """A length of two figures."""
     return f"{value:.2g} m"
+
+
+def of_two_figures(gap: Gap) -> str:
+    """A gap without its interval."""
+    return f"{gap.value:.2g} {gap.measure.unit}"
 
 
 def with_interval(gap: Gap) -> str:

@@ -74,3 +74,13 @@ def test_without_a_gyroscope_treads_may_act_later_instead():
     assert set(ClockStep(SPANS[:1], ((),), has_gyroscope=False).same_as(VALUES)) == {
         "command_delay"
     }
+
+
+def test_a_search_goes_on_to_steps_of_another_run():
+    step = ClockStep(((2.0, 98.0), (2.0, 58.0)), ((40.0,), (20.0, 30.0)))
+    elsewhere = step.elsewhere(np.array([0.3, 40.0, 0.0, 59.0]))
+    assert len(elsewhere) == 6
+    for size in (0.3, -0.3):
+        assert any(np.array_equal(one, [0.3, 40.0, size, 20.0]) for one in elsewhere)
+    alone = ClockStep(((2.0, 98.0),), ((40.0,),))
+    assert alone.elsewhere(np.array([0.3, 40.0])).shape == (0, 2)

@@ -16,13 +16,13 @@ def said(monkeypatch):
     """The sentence of runs with these gaps, by name."""
 
     def of(**gaps):
-        def gap_of(_base, _effects, scenes, _part_s):
+        def gap_of(_base, _effects, scenes, _part_s, _measure):
             return gaps[scenes[0].run.name]
 
         monkeypatch.setattr(by_run, "gap_of", gap_of)
         return by_run.runs_differ(
             SimpleNamespace(
-                measured=SimpleNamespace(noise_floor=FLOOR),
+                closings=(SimpleNamespace(noise_floor=FLOOR), None),
                 calibration=SimpleNamespace(base=None),
                 measured_scenes=[Scene(name) for name in gaps],
             )

@@ -7,14 +7,21 @@ import pytest
 
 from odometry.effects.curvature import Curvature
 from odometry.effects.in_course import in_course
-from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES
+from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES, Residual
 from odometry.effects.time_course import FromAMoment, InBursts
-from odometry.effects.tread_slip import TractionLoss
+from odometry.effects.tread_slip import SlipBySpeed, TractionLoss
+from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.name import form
-from odometry.gap.name.form import lacks_essence, slow_course_in_place, without_essence
+from odometry.gap.name.form import (
+    _is_part_of,
+    lacks_essence,
+    slow_course_in_place,
+    without_essence,
+)
 from odometry.gap.name.form_gates import (
     is_by_its_essence,
 )
@@ -85,6 +92,29 @@ def test_a_width_that_shrinks_towards_the_straight_is(curved):
 
     closed, added = curved(share)
     assert not is_by_its_essence(closed, added, CONFIG)
+
+
+@pytest.mark.parametrize(("share", "least", "most"), [(0.4, 100.0, np.inf), (0.0, -1.0, 9.0)])
+def test_chi_squared_rises_where_what_is_there_is_left_out(make_scene, known, share, least, most):
+    """Speeds that fall with the speed; all else, here nothing, is fitted anew."""
+
+    def planted(_, twist):
+        return twist * (1 - share * np.abs(twist[:, :1]))
+
+    fitter = Fitter(known, measured_of([make_scene(9, planted)], known, CONFIG))
+    fit = fitter.fit([SlipBySpeed()])
+    assert least < fitter.rise_without(fit, 0, ("growth",)) < most
+
+
+@pytest.mark.parametrize(("effect", "is_part"), [(WheelScale(), True), (LateralSkid(), False)])
+def test_constant_shares_are_part_of_a_function_that_may_be_constant(
+    make_scene, known, effect, is_part
+):
+    fitter = Fitter(known, measured_of([make_scene(9, lambda _, t: 0.9 * t)], known, CONFIG))
+    knots = (0.0, 0.5, 1.0)
+    terms = tuple((side, number) for side in ("left", "right") for number in range(3))
+    function = fitter.fit([Residual("tread_speed", terms, "speed", knots)])
+    assert _is_part_of(fitter, fitter.fit([effect]), 0, function) == is_part
 
 
 def test_what_needs_nothing_is_not_asked(make_scene, known):

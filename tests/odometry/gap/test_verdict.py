@@ -41,7 +41,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.pieces import numbered_pieces
-from odometry.gap.prepare.statistic import Gap, sure_sum
+from odometry.gap.prepare.statistic import Gap, Measure, sure_sum
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot
 
@@ -273,3 +273,24 @@ def test_a_name_is_the_main_part_beside_a_smooth_function(of_names, stands):
 def test_no_wheel_grows_from_a_moment_on(left, right, stands):
     reason = no_wheel_grows(np.array([left, right]), CONFIG)
     assert (reason == "") == stands
+
+
+def test_positions_may_not_rise_where_headings_are_judged(make_scene, monkeypatch):
+    """Headings that fall by half, beside positions that rise by half a per cent and by two."""
+    held = [make_scene(4)]
+    errors = {Measure.HEADING: (0.1, 0.05), Measure.POSITION: (0.1, 0.1005)}
+    stages = {"before": 0, "after": 1}
+
+    def errors_of(stage, _, scene, measure):
+        return np.full(len(scene), errors[measure][stages[stage]] ** 2)
+
+    monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", errors_of)
+    monkeypatch.setattr(
+        "odometry.gap.name.verdict.root_mean_square",
+        lambda stage, _, __, measure: errors[measure][stages[stage]],
+    )
+    sides = ("before", ()), ("after", ())
+    assert closes_held_out(*sides, held, CONFIG, Measure.HEADING) == ""
+    errors[Measure.POSITION] = (0.1, 0.102)
+    reason = closes_held_out(*sides, held, CONFIG, Measure.HEADING)
+    assert reason.startswith("the gap on held-out data gets worse")

@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.gap.config import GapConfig
 from odometry.gap.gap import find_gap
+from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.statistic import Measure
 from odometry.gap.show.files import content_of
 from odometry.gap.show.lead import lead
+from odometry.report.gap_tables import closing_grid
 
 ROUGH_M = 0.06  # of a measured position
 
@@ -49,10 +52,27 @@ def less_turn(rough):
 
 def test_a_robot_that_turns_less_is_no_model_as_it_is(less_turn):
     assert less_turn.verdict == "terrain"
-    fitted, held_out = less_turn.by_turns
+    fitted, held_out = less_turn.turns
     assert held_out.before.measure is fitted.before.measure is Measure.HEADING
     assert held_out.share_closed > 0.9
     assert less_turn.holdout.after.value <= less_turn.holdout.before.value
+
+
+def test_without_a_measured_yaw_positions_decide(less_turn):
+    known, held = less_turn.calibration, less_turn.holdout_scenes
+    assert measures_of(known, held, GapConfig(), has_yaw=True) == (Measure.HEADING,)
+    found = measures_of(known, held, GapConfig(), has_yaw=False)
+    assert found[-1] is Measure.POSITION
+
+
+def test_the_page_has_rows_of_both(less_turn):
+    rows = closing_grid(less_turn, None).rows
+    assert [row[0] for row in rows] == [
+        "held out",
+        "measured, fitted",
+        "held out, heading error",
+        "measured, heading error",
+    ]
 
 
 def test_the_words_and_the_file_say_by_what(less_turn):
@@ -68,12 +88,12 @@ def test_the_words_and_the_file_say_by_what(less_turn):
 def test_a_gyroscope_at_fault_moves_no_position(rough):
     found = found_of(rough, gyroscope=1.15)
     assert found.verdict == "gyroscope_error"
-    assert found.by_turns[1].before.measure is Measure.GYROSCOPE
+    assert found.turns[1].before.measure is Measure.GYROSCOPE
     assert found.effects[0].added.values[0] == pytest.approx(1.15, abs=0.01)
 
 
 def test_without_a_change_nothing_is_missing(rough):
     found = found_of(rough)
     assert found.verdict == "none"
-    assert found.by_turns is None
+    assert found.turns is None
     assert content_of(found)["turns"] is None

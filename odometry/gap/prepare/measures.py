@@ -8,7 +8,7 @@ from odometry.gap.prepare.statistic import Gap, Measure, floor_of, floor_there, 
 from odometry.windows.dense import DenseWindows
 
 
-def judged_by(
+def measures_of(
     known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, *, has_yaw: bool
 ) -> tuple[Measure, ...]:
     """Positions, but where these hardly differ from noise, and another measure surely does.

@@ -1,0 +1,89 @@
+"""What to do about a gap, and how far its answer can be relied on."""
+
+from collections.abc import Sequence
+
+from odometry.checks.warned import sensor_faults
+from odometry.effects.drive_limit import DriveLimit
+from odometry.effects.late_treads import ActuatorLag, CommandDelay
+from odometry.gap.answer.result import GapResult
+
+COMMANDS = "treads_are_commands"  # a finding of the check
+OF_DRIVE = frozenset({DriveLimit.name, CommandDelay.name, ActuatorLag.name})
+
+
+def what_to_do(result: GapResult) -> str:
+    """Drives that distinguish rivals, the remedy, and measures that distinguish the rest."""
+    between: dict[str, list[str]] = {}
+    odds: dict[str, float] = {}
+    for drive in result.next_drives:
+        between.setdefault(drive.words, [drive.between[0]]).append(drive.between[1])
+        odds[drive.words] = min(drive.odds, odds.get(drive.words, 1.0))
+    drives = [
+        f"To distinguish {name} from {listed(others, 'or')}: {words}, for a minute (decides in "
+        f"{100 * odds[words]:.0f} % of cases)."
+        for words, (name, *others) in between.items()
+    ]
+    if faults_of_sensors(result):
+        drives.insert(0, "First correct what check warns of, and run gap again.")
+    decided = {name for one in result.next_drives for name in one.between}
+    measures = [
+        f"If it is {one.name}: {one.told_apart_by}."
+        if one.instead_of == "unknown"
+        else f"What distinguishes {one.instead_of} from {one.name}: {one.told_apart_by}."
+        for one in result.equivalent
+        if one.name not in decided
+    ]
+    remedy = _remedy(result)
+    if drives and result.verdict != "none":
+        remedy = f"If it is {result.verdict}: {remedy[0].lower()}{remedy[1:]}"
+    return " ".join([*drives, remedy, *measures])
+
+
+def _remedy(result: GapResult) -> str:
+    if not result.effects:
+        if is_not_held_out(result):
+            return "Hold out runs that are driven as the measured ones are (--holdout)."
+        if result.verdict == "unknown":
+            return "Look at the worst stretches in report.html, and record what may differ there."
+        if is_doubtful(result):
+            return (
+                "Do not rely on this: hold out whole runs with the same kind of drive "
+                "(--holdout), and try again."
+            )
+        return "Keep the model as it is."
+    if result.verdict == "unknown" and not result.depends_on:
+        return "Look at the worst stretches in report.html, and record what may differ there."
+    remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
+    return f"{'; '.join(remedies)}.".capitalize()
+
+
+def faults_of_sensors(result: GapResult) -> list[str]:
+    """Findings of the check that may stand for what is named.
+
+    That the columns hold commands is none of them where an effect of the drive is named first: it
+    is what a drive does with commands.
+    """
+    of_drive = result.verdict in OF_DRIVE
+    return [one for one in sensor_faults(result.faults) if not (of_drive and one == COMMANDS)]
+
+
+def is_not_held_out(result: GapResult) -> bool:
+    """Whether the measured runs show what is unknown and the held-out data do not."""
+    held = result.closings[1]
+    return (
+        result.verdict == "unknown"
+        and is_doubtful(result)
+        and held.before.low <= held.noise_floor.high
+    )
+
+
+def is_doubtful(result: GapResult) -> bool:
+    """Whether "none" is said of measured runs that noise does not explain."""
+    measured, _ = result.closings
+    return measured.before.is_above(measured.noise_floor)
+
+
+def listed(names: Sequence[str], word: str = "and") -> str:
+    """Names as a sentence lists them."""
+    *others, last = names
+    return f"{', '.join(others)} {word} {last}" if others else last
