@@ -116,7 +116,11 @@ def slow_course_in_place(search: Search, names: Fitted, place: int) -> str:
     if names.effects[place].effect.course != FromAMoment.name:
         return ""
     others = [*names.effects[:place], *names.effects[place + 1 :]]
-    before = _fit(search.fitter, others)
+    return slow_course_instead(search, _fit(search.fitter, others), names)
+
+
+def slow_course_instead(search: Search, before: Fitted, names: Fitted) -> str:
+    """Why names that come at once, added to what was before, are none: a slow course does more."""
     course = best_course(search.fitter, before, search.held_out, search.config)
     if course is None:
         return ""

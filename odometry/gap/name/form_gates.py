@@ -50,7 +50,7 @@ def is_special(instead: Residual | None) -> str:
 
 
 def is_abrupt(cost_of_course: float, cost: float, margin: float) -> str:
-    """Whether a name with a moment explains as much as a motion that comes and goes slowly."""
+    """Whether a name that comes at once explains as much as a motion that comes slowly."""
     if cost - cost_of_course < margin:
         return ""
     return "a slow course in run time explains more in its place: there is no moment"

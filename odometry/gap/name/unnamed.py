@@ -18,6 +18,7 @@ from odometry.gap.fit.course import best_course
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_values import with_values_of_each_run
 from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.form import slow_course_instead
 from odometry.gap.name.general import general_candidates, single_candidates
 from odometry.gap.name.search import Search
 from odometry.gap.name.verdict import come_by_themselves, leaves_noise
@@ -53,6 +54,8 @@ def in_bursts(search: Search, found: Explanation) -> Explanation:
     spread = search.fitter.spread(found.fitted)
     reason = leaves_noise(spread, closed, search.config.left_over, search.config.bursts_closed)
     reason = reason or _follow_a_variable(search, found)
+    if found.steps and not reason:
+        reason = slow_course_instead(search, nothing.fitted, found.fitted)
     for effect in found.effects if reason else ():
         search.refuse(effect, reason)
     return nothing if reason else found

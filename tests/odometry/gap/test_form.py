@@ -66,10 +66,16 @@ def test_a_name_that_passed_by_what_another_did_is_tested_again(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("cost", "area", "stands"), [(1500.0, 0.6, True), (2500.0, 0.6, False), (1500.0, 0.97, False)]
+    ("cost", "area", "slow", "stands"),
+    [
+        (1500.0, 0.6, "", True),
+        (2500.0, 0.6, "", False),
+        (1500.0, 0.97, "", False),
+        (1500.0, 0.6, "a slow course explains more", False),
+    ],
 )
-def test_events_must_close_nearly_all_and_come_by_themselves(monkeypatch, cost, area, stands):
-    """Of an excess of 10 000, 95 or 85 % close; a variable says when events are, or none does."""
+def test_events_close_nearly_all_by_themselves_and_at_once(monkeypatch, cost, area, slow, stands):
+    """Of an excess of 10 000, 95 or 85 % close; a variable says when, or a slow course is more."""
     effect = in_course(TractionLoss(), InBursts((((1.0, 2.0),),)))
     start = SimpleNamespace(cost=11_000.0, effects=())
     fitted = SimpleNamespace(cost=cost, effects=(Added(effect, np.array([0.5, 0.5])),))
@@ -77,6 +83,7 @@ def test_events_must_close_nearly_all_and_come_by_themselves(monkeypatch, cost, 
     monkeypatch.setattr("odometry.gap.name.unnamed.burst_effects", lambda *_: (effect,))
     monkeypatch.setattr("odometry.gap.name.unnamed.judge", lambda *args: [step for _ in args[2]])
     monkeypatch.setattr("odometry.gap.name.unnamed.variable_of_events", lambda *_: ("speed", area))
+    monkeypatch.setattr("odometry.gap.name.unnamed.slow_course_instead", lambda *_: slow)
     refused = []
     fitter = SimpleNamespace(
         measured=SimpleNamespace(expected=1000.0, scenes=()),
