@@ -109,7 +109,11 @@ def _largest_first(search: Search, found: Explanation) -> Explanation:
         scenes, measure = search.fitter.measured.scenes, search.floor.measure
         without[name] = root_mean_square(fit.base, fit.effects, scenes, measure)
     order = sorted(names, key=lambda name: -without[name])
-    return found if order == names else search.in_order(found, order)
+    if order == names:
+        return found
+    ordered = search.in_order(found, order)
+    earns = ordered.steps[0].evidence > search.config.least_evidence
+    return ordered if earns else found
 
 
 def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:

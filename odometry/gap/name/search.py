@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from sklearn.linear_model import LassoLarsIC
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
@@ -13,6 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, judge, ranked
 from odometry.gap.fit.effect_values import is_the_effect
 from odometry.gap.fit.fitter import Fitted, Fitter
+from odometry.gap.fit.sparse import sparse_residual
 from odometry.gap.name.candidates import contact_effects, of_the_same_robot
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form_gates import (
@@ -55,7 +55,7 @@ class Search:
             before = found.fitted
             if found.steps and not self.has_excess(before):
                 break
-            judged = self._judged(before, [c for c in candidates if c.name not in found.names])
+            judged = self._judged(before, _beside(found, candidates))
             found = replace(found, first=found.first or tuple(judged))
             best = self.best_earner(judged, before)
             if best is None:
@@ -221,26 +221,12 @@ class Search:
         return bool(of_gap or closed > share * excess)
 
 
-def sparse_residual(fitter: Fitter, fit: Fitted) -> Residual:
-    """The last effect of a fit, a `Residual`, with the terms that the lasso keeps by BIC.
+def _beside(found: Explanation, candidates: Sequence[Effect]) -> list[Effect]:
+    """Those that are no name yet, and that lowered the cost by themselves.
 
-    All other parameters are projected out, so that no term takes their place.
+    Names of which one does nothing without the other imitate a third cause.
     """
-    residual = fit.effects[-1].effect
-    if not isinstance(residual, Residual):
-        raise TypeError(f"the last effect is {residual.name}, expected a residual")
-    design = fitter.design(fit)
-    rows, jacobian = design.rows, design.jacobian
-    own = jacobian[:, -len(residual.terms) :]
-    others = jacobian[:, : -len(residual.terms)]
-    target = own @ fit.effects[-1].values - rows
-    basis, _ = np.linalg.qr(others)
-    own, target = own - basis @ (basis.T @ own), target - basis @ (basis.T @ target)
-    lengths = np.maximum(np.linalg.norm(own, axis=0), 1e-12)
-    noise = max(1.0, float(rows @ rows) / len(rows))
-    lasso = LassoLarsIC(criterion="bic", fit_intercept=False, noise_variance=noise)
-    kept = lasso.fit(own / lengths, target).coef_ != 0
-    if not kept.any():
-        return residual
-    terms = tuple(term for term, keep in zip(residual.terms, kept, strict=True) if keep)
-    return replace(residual, terms=terms)
+    alone = {one.effect.key: one.evidence for one in found.first}
+    return [
+        one for one in candidates if one.name not in found.names and alone.get(one.key, 1.0) > 0
+    ]

@@ -7,15 +7,20 @@ import pytest
 from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import Residual
 from odometry.effects.time_offset import TimeOffset
+from odometry.gap.config import GapConfig
 from odometry.gap.name.names import _largest_first
+from odometry.gap.name.search import _beside
 from odometry.gap.prepare.statistic import Measure
 
 LATE, SKID = TimeOffset(), LateralSkid()
 FUNCTION = Residual("speed", (("v_x", 0), ("v_x", 1)), "v_x", (0.0, 1.0))
 
 
-def ordered(monkeypatch, effects, gap_without):
-    """The order in which effects are put, where a gap comes back without each."""
+def ordered(monkeypatch, effects, gap_without, evidence=100.0):
+    """The order in which effects are put, where a gap comes back without each.
+
+    The new first one has so much evidence by itself.
+    """
 
     def gap_of(_, added, *__):
         return gap_without[next(one for one in gap_without if one not in added)]
@@ -27,7 +32,10 @@ def ordered(monkeypatch, effects, gap_without):
             measured=measured, fit=lambda of, _: SimpleNamespace(base=None, effects=of)
         ),
         floor=SimpleNamespace(measure=Measure.POSITION),
-        in_order=lambda _, order: SimpleNamespace(effects=tuple(order)),
+        config=GapConfig(),
+        in_order=lambda _, order: SimpleNamespace(
+            effects=tuple(order), steps=[SimpleNamespace(evidence=evidence)]
+        ),
     )
     found = SimpleNamespace(effects=tuple(effects), fitted=SimpleNamespace(effects=()))
     return _largest_first(search, found).effects
@@ -39,6 +47,24 @@ def ordered(monkeypatch, effects, gap_without):
 def test_most_of_the_gap_decides(monkeypatch, without_late, without_skid, first):
     gaps = {LATE: without_late, SKID: without_skid}
     assert ordered(monkeypatch, [LATE, SKID], gaps)[0] is first
+
+
+def test_what_does_nothing_by_itself_is_not_first(monkeypatch):
+    gaps = {LATE: 0.03, SKID: 0.18}
+    assert ordered(monkeypatch, [LATE, SKID], gaps, evidence=-38.0)[0] is LATE
+
+
+def test_what_does_nothing_by_itself_is_no_second_name():
+    first = [
+        SimpleNamespace(effect=effect, evidence=evidence)
+        for effect, evidence in ((SKID, 237.0), (LATE, -38.0))
+    ]
+    found = SimpleNamespace(first=first, names=(SKID.name,))
+    assert _beside(found, [SKID, LATE]) == []
+    first[1].evidence = 5.0
+    assert _beside(found, [SKID, LATE]) == [LATE]
+    found.first = ()
+    assert _beside(found, [SKID, LATE]) == [LATE]
 
 
 def test_one_name_and_smooth_functions_stay_as_they_are(monkeypatch):
