@@ -13,9 +13,7 @@ from odometry.gap.locate.predictors import Predictor, predictors
 from odometry.gap.locate.variables import window_variables
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
-from odometry.gap.name.form_gates import (
-    is_the_main_part,
-)
+from odometry.gap.name.form_gates import is_the_main_part
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import sudden_wheels
 from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course

@@ -78,10 +78,8 @@ def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -
 def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:
     """Why an effect is not by what makes it what it is: it closes as much without, or is unsure."""
     added = fit.effects[place]
-    if not added.effect.essential:
-        return ""
     closed = closes_without_essence(fitter, fit, place, config)
-    if closed:
+    if closed or not added.effect.essential:
         return closed
     rise = fitter.rise_without(fit, place, added.effect.essential)
     return is_sure_of_its_essence(added, rise / max(1.0, fitter.spread(fit)), config)
@@ -170,8 +168,8 @@ def smooth_in_place(
         return None
     if names.effects[place].effect.slow and closes_less(search, fits[best], names):
         return None
-    is_part = _is_part_of(fitter, names, place, fits[best])
-    if is_most_of(closed, cost_of(before) - cost, is_part, config):
+    is_main_part = is_most_of(closed, cost_of(before) - cost, config)
+    if is_main_part and _is_part_of(fitter, names, place, fits[best]):
         return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
     still = (cost - cost_of(both)) / closed

@@ -79,13 +79,13 @@ def is_sure_of_its_essence(added: Added, rise: float, config: GapConfig) -> str:
     return f"{names}, which makes it this effect, cannot be distinguished from none"
 
 
-def is_most_of(closed: float, by_function: float, is_part: bool, config: GapConfig) -> bool:
-    """Whether a name is the main part of a smooth function that does more in its place.
+def is_most_of(closed: float, by_function: float, config: GapConfig) -> bool:
+    """Whether a name closes most of what a smooth function closes in its place.
 
-    `is_part`: the function can do what the name does, as one of a tread's share, of anything, is a
-    wheel scale where it is constant. What it does beyond that is something else beside the name.
+    Where the function can do what the name does, as one of a tread's share, of anything, is a wheel
+    scale where it is constant: what it does beyond that is something else beside the name.
     """
-    return is_part and closed >= config.main_part * by_function
+    return closed >= config.main_part * by_function
 
 
 def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWindows]) -> str:

@@ -15,10 +15,7 @@ from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.sparse import sparse_residual
 from odometry.gap.name.candidates import contact_effects, of_the_same_robot
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.form_gates import (
-    is_resolved,
-    is_unbeaten,
-)
+from odometry.gap.name.form_gates import is_resolved, is_unbeaten
 from odometry.gap.name.verdict import (
     Refusal,
     base_left_calibration,

@@ -146,8 +146,8 @@ def floor_there(
     """The noise floor as it would be on other runs.
 
     Faster ones wander further in a window, and an uncertain calibration leads further off; the
-    noise of a gyroscope is the same on all. Never
-    less than a share of the way: stamps and held speeds are rounded even where nothing is noisy.
+    noise of a gyroscope is the same on all. Never less than a share of the way: stamps and held
+    speeds are rounded even where nothing is noisy.
     """
     columns = {Measure.POSITION: [0, 1], Measure.HEADING: [2]}.get(floor.measure)
     here, there = (

@@ -13,6 +13,7 @@ from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import ground_steps
 from terrain.checks.image_motion import image_motion
+from tests.studies.check_image_motion import moved, with_images
 
 
 @pytest.fixture(scope="module")
@@ -23,16 +24,6 @@ def drive():
 @pytest.fixture(scope="module")
 def camera(drive):
     return Camera.from_table(drive.settings["camera"])
-
-
-def with_images(run, **columns):
-    return replace(run, images=replace(run.images, columns=run.images.columns | columns))
-
-
-def turned(camera, place, change):
-    mount = camera.mount.copy()
-    mount[place] = change(mount[place])
-    return Camera.from_mount(camera.image_size, camera.matrix, camera.distortion, mount)
 
 
 def found(run, camera):
@@ -73,14 +64,14 @@ def test_a_lag_that_moves_labels_by_centimetres_is_none(drive, camera):
 
 @pytest.mark.parametrize("times", [0.5, 1.5])
 def test_another_height_of_the_camera_is_measured(drive, camera, times):
-    cause = found(drive, turned(camera, 2, lambda z: times * z))["camera_height"].cause
+    cause = found(drive, moved(camera, 2, lambda z: times * z))["camera_height"].cause
     fits_m = float(cause.split(": ")[1].split(" m fit")[0])
     assert fits_m == pytest.approx(1.2, rel=0.02)
 
 
 @pytest.mark.parametrize(("degrees", "words"), [(20, "right"), (-90, "left"), (180, "reverse")])
 def test_a_camera_that_looks_elsewhere_is_named(drive, camera, degrees, words):
-    other = turned(camera, 5, lambda yaw: yaw + np.radians(degrees))
+    other = moved(camera, 5, lambda yaw: yaw + np.radians(degrees))
     cause = found(drive, other)["camera_yaw"].cause
     assert words in cause
     assert f"{abs(degrees)} degrees" in cause
