@@ -39,8 +39,8 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     if loss > EXPLAINED * motion.even_loss or not motion.is_within:
         return [], (
             "whether images show the motion of the treads: they do not agree within "
-            f"{LARGEST_LAG_S:g} s (images of another drive, a camera that rocks, or a robot that "
-            "always moves in the same way)"
+            f"{LARGEST_LAG_S:g} s (images of another drive or upside down, a camera that rocks, or "
+            "a robot that always moves in the same way)"
         )
     return list(_findings(motion, camera.height_m)), ""
 

@@ -114,3 +114,13 @@ def test_what_other_warnings_explain_is_not_compared(drive):
     assert report.misleads
     assert not any(one.name.startswith(("images_", "camera_")) for one in report.findings)
     assert any("see the warnings" in words for words in report.skipped)
+
+
+def test_images_upside_down_are_not_accused_of_anything_else(drive, camera, tmp_path):
+    folder = tmp_path / "run"
+    shutil.copytree(drive.folder, folder)
+    for path in sorted((folder / "images").iterdir()):
+        cv2.imwrite(str(path), cv2.flip(cv2.imread(str(path)), -1))
+    findings, skipped = image_motion(Run.read(folder), camera)
+    assert not findings
+    assert "upside down" in skipped
