@@ -97,6 +97,7 @@ CATALOGUE: dict[str, str] = {
     "turns_recorded_once": "treads and yaw rate, one of which was computed from the other",
     "gyroscope_bias": "a bias of the yaw rate",
     "gyroscope_unit": "yaw rate in degrees per second",
+    "gyroscope_scale": "yaw rate scaled by some percent",
     "gyroscope_reversed": "yaw rate with the wrong sign",
     "gyroscope_clipped": "yaw rate clipped at a limit",
     "gyroscope_dead": "yaw rate that repeats one value",
@@ -228,5 +229,6 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     if names & NOT_CURVES:
         implied.add("treads_not_proportional")
     if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
-        implied.add("sensors_disagree")  # it is for what has no name
+        # one is for what has no name, the other for what is wrong by a little
+        implied |= {"sensors_disagree", "gyroscope_scale"}
     return [finding for finding in findings if finding.name not in implied]

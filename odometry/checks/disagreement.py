@@ -123,7 +123,9 @@ SPANS_S = (15.0, 5.0, 1.5)  # over which headings of gyroscope and poses are com
 APART_RAD = 0.3  # good recordings stay below 0.21 (nine in ten spans)
 OF_TURN = 0.03  # of all turns within a span, by which a gyroscope may differ
 LEAST_SPANS_S = 10.0
-SCALE = 0.1  # of the turns, by which gyroscope and measured yaw differ
+SCALE, SMALL_SCALE = 0.1, 0.03  # of the turns, by which gyroscope and measured yaw differ
+CORRELATED = 0.9
+CLOSELY = 0.99  # noise of a gyroscope lowers its ratio by two hundredths there, at most
 CERTAIN = 5.0  # standard deviations
 LEAST_SCALED_RAD = 1.0  # range of the heading from which the ratio of a gyroscope is compared
 LEAST_SPANS = 30
@@ -134,16 +136,44 @@ OFFSETS_RAD = np.radians(25)  # between pieces
 
 def scales_apart(evidence: Evidence) -> str:
     """Turns of gyroscope and poses that have a constant ratio other than one."""
+    fit = _turn_ratio(evidence, SCALE, CORRELATED)
+    return (
+        "" if fit is None else f"{_ratio_words(fit)} (a scale of either, or an axis that is tilted)"
+    )
+
+
+def gyroscope_scale(evidence: Evidence) -> Iterator[Finding]:
+    """A ratio nearer to one than `scales_apart` asks: a robot is as wrong in each of its turns."""
+    fit = _turn_ratio(evidence, SMALL_SCALE, CLOSELY)
+    if fit is None or scales_apart(evidence):
+        return
+    tilt = np.degrees(np.arccos(min(1 / fit.slope, 1.0)))
+    tilted = f", or its axis is tilted by {tilt:.0f} degrees" if fit.slope > 1 else ""
+    yield Finding(
+        "gyroscope_scale",
+        Level.NOTE,
+        _ratio_words(fit),
+        f"The gyroscope has a wrong scale{tilted}; or the yaw of the poses has one",
+        f"Multiply gyro_z by {fit.slope:.3f} if the yaw of the poses is right",
+    )
+
+
+def _turn_ratio(evidence: Evidence, apart: float, correlated: float) -> Relation | None:
+    """Measured turns by those of the gyroscope, where these surely differ by more than a share."""
     fit = evidence.pose_turn_by_gyroscope
-    if fit is None or not fit.distinct or fit.correlation < 0.9:
-        return ""
-    if not evidence.yaw_measured or abs(fit.slope - 1) < SCALE + CERTAIN * fit.slope_sigma:
-        return ""
+    if fit is None or not fit.distinct or fit.correlation < correlated:
+        return None
+    if not evidence.yaw_measured or abs(fit.slope - 1) < apart + CERTAIN * fit.slope_sigma:
+        return None
     if lasting_turn_rad(evidence.pose_turn_rad, evidence.motion.lasts_s) < LEAST_SCALED_RAD:
-        return ""
+        return None
+    return fit
+
+
+def _ratio_words(fit: Relation) -> str:
     return (
         f"measured yaw turns by {fit.slope:.3f} +- {fit.slope_sigma:.3f} times what the gyroscope "
-        "turns (a scale of either, or an axis that is tilted)"
+        "turns"
     )
 
 

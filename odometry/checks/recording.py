@@ -14,6 +14,7 @@ from odometry.checks.copied_columns import copied_columns
 from odometry.checks.course import course
 from odometry.checks.disagreement import (
     agreement,
+    gyroscope_scale,
     lasting_disagreements,
     scales_apart,
     sensors_disagree,
@@ -72,6 +73,7 @@ CHECKS: tuple[Check, ...] = (
     timing,
     poses,
     gyroscope,
+    gyroscope_scale,
     pose_outages,
     attitude,
     settings,

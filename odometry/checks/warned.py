@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.finding import CheckReport, Finding, Level
 
-NOTED = frozenset({"straight_drives"})  # notes that may be the cause of a gap
+NOTED = frozenset({"straight_drives", "gyroscope_scale"})  # notes that may be the cause of a gap
 TRUE_SLIP = frozenset({"slip", "slip_in_turns", "slip_episodes"})  # what a robot does, no fault
 RunFinding = tuple[str, Finding]  # the name of a run, and what was found there
 

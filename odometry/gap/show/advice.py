@@ -4,11 +4,15 @@ from collections.abc import Sequence
 
 from odometry.checks.warned import sensor_faults
 from odometry.effects.drive_limit import DriveLimit
+from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.late_treads import ActuatorLag, CommandDelay
 from odometry.gap.answer.result import GapResult
 
-COMMANDS = "treads_are_commands"  # a finding of the check
-OF_DRIVE = frozenset({DriveLimit.name, CommandDelay.name, ActuatorLag.name})
+# Findings of the check, and the effects of which they are no rivals but the same.
+SAME = {
+    "treads_are_commands": frozenset({DriveLimit.name, CommandDelay.name, ActuatorLag.name}),
+    "gyroscope_scale": frozenset({GyroscopeError.name}),
+}
 
 
 def what_to_do(result: GapResult) -> str:
@@ -61,10 +65,10 @@ def faults_of_sensors(result: GapResult) -> list[str]:
     """Findings of the check that may stand for what is named.
 
     That the columns hold commands is none of them where an effect of the drive is named first: it
-    is what a drive does with commands.
+    is what a drive does with commands. Nor is the scale of a gyroscope that is named.
     """
-    of_drive = result.verdict in OF_DRIVE
-    return [one for one in sensor_faults(result.faults) if not (of_drive and one == COMMANDS)]
+    found = sensor_faults(result.faults)
+    return [one for one in found if result.verdict not in SAME.get(one, ())]
 
 
 def is_not_held_out(result: GapResult) -> bool:

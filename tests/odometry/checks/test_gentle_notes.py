@@ -5,6 +5,7 @@ import pytest
 
 from odometry.checks.finding import Level
 from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import gyroscope
 from tests.odometry.checks.test_odd_input import DRIVES, changed, drive, table, with_imu
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
 
@@ -91,3 +92,22 @@ def test_what_is_no_run_folder_is_said_in_one_line(tmp_path, made, words):
     assert (found.name, found.level) == ("no_run_folder", Level.REFUSED)
     assert words in found.line
     assert "\n" not in found.line
+
+
+@pytest.mark.parametrize("factor", [0.94, 1.08])
+def test_a_gyroscope_that_is_wrong_by_some_percent_is_a_note(factor):
+    (found,) = check_recording(gyroscope(winding(), lambda rate: factor * rate)).findings
+    assert (found.name, found.level) == ("gyroscope_scale", Level.NOTE)
+    ratio = float(found.remedy.split("gyro_z by ")[1].split()[0])
+    assert ratio == pytest.approx(1 / factor, abs=0.005)
+    assert ("tilted" in found.cause) == (factor < 1)
+
+
+@pytest.mark.parametrize("factor", [0.98, 1.02])
+def test_a_gyroscope_that_is_wrong_by_little_is_not_mentioned(factor):
+    assert names(gyroscope(winding(), lambda rate: factor * rate)) == []
+
+
+def test_a_gyroscope_that_is_noisy_is_not_called_wrong():
+    noise = np.random.default_rng(0).normal(0, 0.3, len(winding().odometry))
+    assert "gyroscope_scale" not in names(gyroscope(winding(), lambda rate: rate + noise))

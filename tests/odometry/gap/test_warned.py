@@ -9,8 +9,10 @@ import pytest
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.checks.warned import faults_of, faults_words
 from odometry.effects.corrected import Added
+from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.late_treads import ActuatorLag
 from odometry.gap.answer.result import NamedEffect
+from odometry.gap.show.advice import faults_of_sensors
 from odometry.gap.show.files import content_of
 from odometry.gap.show.lead import lead
 from odometry.gap.show.words import sentences
@@ -63,6 +65,14 @@ def test_columns_of_commands_do_not_contradict_an_effect_of_the_drive(scaled_res
     assert "Check warns: " in said[3]
     scaled = sentences(replace(scaled_result, faults=faults))
     assert scaled[0].startswith("A sensor or the robot: ")
+
+
+def test_a_gyroscope_of_another_scale_is_noted_and_does_not_contradict_its_own_name(scaled_result):
+    faults = faults_of([report("grass", "gyroscope_scale", Level.NOTE)])
+    wrong = NamedEffect(Added(GyroscopeError(), np.array([1.08, 0.0])), *[np.zeros(2)] * 2, 1, 1, 9)
+    named = replace(scaled_result, verdict="gyroscope_error", effects=(wrong,), faults=faults)
+    assert faults_of_sensors(named) == []
+    assert faults_of_sensors(replace(scaled_result, faults=faults)) == ["gyroscope_scale"]
 
 
 @pytest.mark.parametrize("name", ["none_result", "unknown_result"])
