@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.options import OUTPUT, processes_option, run_folders, scheduler_option
+from terrain.cli.options import OUTPUT, processes_option, scheduler_option
 from terrain.cli.run import run_options
+from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from terrain.batch.batch import Batch

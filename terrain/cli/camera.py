@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.options import OUTPUT, RunFolder
+from terrain.cli.options import OUTPUT
 from terrain.cli.recordings import span_options
+from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
     from odometry.run import Run

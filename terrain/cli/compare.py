@@ -5,16 +5,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import (
-    MODEL_NAMES,
-    OUTPUT,
-    RunFolder,
-    require_model,
-    run_folders,
-    window_options,
-)
+from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model, window_options
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
+from terrain.cli.run_folders import RunFolder, RunsFirst, run_folders
 
 if TYPE_CHECKING:
     from odometry.comparison.result import Comparison
@@ -105,7 +99,7 @@ def _print_place(comparison: "Comparison", place: "Place") -> None:
 FOLDER = RunFolder()
 
 
-@click.command()
+@click.command(cls=RunsFirst)
 @run_folders
 @click.option(
     "--model",

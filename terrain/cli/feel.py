@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, run_folders
+from terrain.cli.options import OUTPUT, Positive
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
+from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import MODEL_NAMES, OUTPUT, RunFolder, require_model
+from terrain.cli.options import MODEL_NAMES, OUTPUT, require_model
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_table, print_written
+from terrain.cli.run_folders import RunFolder, RunsFirst
 
 if TYPE_CHECKING:
     from odometry.gap.answer.result import GapResult
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 FOLDER = RunFolder()
 
 
-@click.command()
+@click.command(cls=RunsFirst)
 @click.argument("folders", metavar="MEASURED...", nargs=-1, required=True, type=FOLDER)
 @click.option(
     "--calibration",

@@ -15,15 +15,9 @@ from terrain.cli.identification_outputs import (
     warned,
     write_ros,
 )
-from terrain.cli.options import (
-    MODEL_NAMES,
-    OUTPUT,
-    assignments,
-    require_model,
-    run_folders,
-    window_options,
-)
+from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
 from terrain.cli.recordings import span_options
+from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from odometry.parameters import ParameterSet

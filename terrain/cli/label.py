@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, Positive, RunFolder
+from terrain.cli.options import OUTPUT, Positive
 from terrain.cli.recordings import span_options
+from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
     from odometry.run_span import Span

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.options import OUTPUT, RunFolder
+from terrain.cli.options import OUTPUT
 from terrain.cli.recordings import span_options
 from terrain.cli.results import print_written
+from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
     from odometry.feel.model import FeelModel

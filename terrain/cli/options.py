@@ -42,29 +42,6 @@ def scheduler_option(command: Callable[..., None]) -> Callable[..., None]:
     )(command)
 
 
-class RunFolder(click.Path):
-    """A run folder; for a bag the error says how to import it."""
-
-    def __init__(self) -> None:
-        super().__init__(file_okay=False, path_type=Path)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path, click's error for another file, or a RunFolderError for a bag."""
-        from odometry.errors import RunFolderError
-        from odometry.io.run_folder import bag_at, this_is_a_bag
-
-        if bag_at(Path(value)):
-            raise RunFolderError(this_is_a_bag(Path(value)))
-        return super().convert(value, param, ctx)
-
-
-def run_folders(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the run folders RUN...; the command gets them as `folders`."""
-    return click.argument("folders", metavar="RUN...", nargs=-1, required=True, type=RunFolder())(
-        command
-    )
-
-
 class Positive(click.FloatRange):
     """A number well above zero that is finite: click lets nan and inf pass."""
 
