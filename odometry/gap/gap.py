@@ -119,7 +119,9 @@ def find_gap(
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))
     with tqdm(desc="candidates", unit="fit", disable=None if show_progress else True) as bar:
-        for measure in measures_of(known, held_scenes, config, has_yaw=not headings.found):
+        for measure in measures_of(
+            known, fitted_scenes, held_scenes, config, has_yaw=not headings.found
+        ):
             own_floor = floor_of(known.held_back, config.part_s, measure)
             floors = (
                 floor_there(own_floor, known, fitted_scenes, config),

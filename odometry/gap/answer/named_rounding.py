@@ -12,7 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.name.verdict import within_noise
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import Gap, floor_there, gap_m, gap_of
+from odometry.gap.prepare.statistic import Gap, Shown, floor_there, gap_m, gap_of
 from odometry.windows.dense import DenseWindows
 
 
@@ -31,11 +31,17 @@ def named_rounding(
     steps_m = [one.rounded_m for one in measured]
     if not all(steps_m) or max(one.rounded_m for _, one in known.held_back) >= min(steps_m):
         return None
-    gap = gap_of(known.base, (), held_out, config.part_s)
-    plain = floor_there(floor, known, _unrounded(held_out), config)
-    rounded = floor_there(floor, known, held_out, config)
-    if within_noise(gap, plain, config):
+    before = [
+        (
+            gap_of(known.base, (), scenes, config.part_s),
+            floor_there(floor, known, _unrounded(scenes), config),
+        )
+        for scenes in (held_out, measured)
+    ]
+    if within_noise(Shown(*before), config):
         return None
+    gap, plain = before[0]
+    rounded = floor_there(floor, known, held_out, config)
     closed = (rounded.value**2 - plain.value**2) / (gap.value**2 - plain.value**2)
     evidence = _evidence(measured, known, config)
     if closed < config.least_of_rest or evidence < config.least_evidence:

@@ -27,7 +27,8 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
+from odometry.gap.prepare.statistic import Gap, Shown, gap_of, root_mean_square
+from odometry.windows.dense import DenseWindows
 
 
 class Standing(Search):
@@ -179,9 +180,8 @@ class Standing(Search):
             self.fitter.calibration,
         )
         measure = self.floor.measure
-        at_first = gap_of(believed, (), held_out, self.config.part_s, measure)
         reasons = [
-            within_noise(at_first, self.held_floor, self.config),
+            within_noise(self._at_first(held_out), self.config),
             raises_measured(self._believed_gap(), self._gap(fit), measure),
             *(
                 closes_held_out(
@@ -195,6 +195,15 @@ class Standing(Search):
             ),
         ]
         return next((reason for reason in reasons if reason), "")
+
+    def _at_first(self, held_out: Sequence[DenseWindows]) -> Shown:
+        """The gaps of the base as it was calibrated, on held-out and on measured windows."""
+        base, measure = self.fitter.calibration.base, self.floor.measure
+        held, measured = (
+            gap_of(base, (), of, self.config.part_s, measure)
+            for of in (held_out, self.fitter.measured.scenes)
+        )
+        return Shown((held, self.held_floor), (measured, self.floor))
 
 
 def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:

@@ -23,6 +23,7 @@ from odometry.gap.prepare.statistic import (
     SEED,
     Gap,
     Measure,
+    Shown,
     drawn_gaps,
     root_mean_square,
     squared_errors,
@@ -40,15 +41,16 @@ class Refusal:
     reason: str
 
 
-def within_noise(held_out: Gap, floor: Gap, config: GapConfig) -> str:
+def within_noise(before: Shown, config: GapConfig) -> str:
     """Whether the gap on held-out data before anything is added is surely above the noise floor."""
-    unsure = held_out.doubt_above(floor)
-    if held_out.value - floor.value > config.above_floor * unsure:
+    if before.is_sure(config.above_floor):
         return ""
+    held_out, floor = before.held_out
     noun, unit = held_out.measure.noun, held_out.measure.unit
     return (
         f"the {noun} on held-out data, {held_out.value:.3g} {unit}, is not surely above the noise "
-        f"floor of {floor.value:.3g} {unit}: the difference is known to {unsure:.2g} {unit}"
+        f"floor of {floor.value:.3g} {unit}: the difference is known to "
+        f"{held_out.doubt_above(floor):.2g} {unit}"
     )
 
 

@@ -4,12 +4,17 @@ from collections.abc import Sequence
 
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
-from odometry.gap.prepare.statistic import Gap, Measure, floor_of, floor_there, gap_of
+from odometry.gap.prepare.statistic import Gap, Measure, Shown, floor_of, floor_there, gap_of
 from odometry.windows.dense import DenseWindows
 
 
 def measures_of(
-    known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, *, has_yaw: bool
+    known: Calibration,
+    measured: Sequence[DenseWindows],
+    held_out: Sequence[DenseWindows],
+    config: GapConfig,
+    *,
+    has_yaw: bool,
 ) -> tuple[Measure, ...]:
     """Positions, but where these hardly differ from noise, and another measure surely does.
 
@@ -18,23 +23,23 @@ def measures_of(
     error alone nothing is missing in a model: positions follow it, where it gives nothing a name.
     """
     others = [Measure.HEADING] if has_yaw else []
-    if all(scene.reported_turns is not None for scene in held_out):
+    if all(scene.reported_turns is not None for scene in (*measured, *held_out)):
         others.append(Measure.GYROSCOPE)
     gap, floor = _on(known, held_out, config, Measure.POSITION)
     if gap.value > max(config.hardly * floor.value, floor.value + gap.doubt_above(floor)):
         return (Measure.POSITION,)
     for measure in others:
-        gap, floor = _on(known, held_out, config, measure)
-        surely = gap.value - floor.value > config.turns_above * gap.doubt_above(floor)
-        if surely and gap.value > config.turns_times * floor.value:
+        shown = Shown(*(_on(known, scenes, config, measure) for scenes in (held_out, measured)))
+        gap, floor = shown.held_out
+        if shown.is_sure(config.turns_above) and gap.value > config.turns_times * floor.value:
             return (measure,) if measure is Measure.HEADING else (measure, Measure.POSITION)
     return (Measure.POSITION,)
 
 
 def _on(
-    known: Calibration, held_out: Sequence[DenseWindows], config: GapConfig, measure: Measure
+    known: Calibration, scenes: Sequence[DenseWindows], config: GapConfig, measure: Measure
 ) -> tuple[Gap, Gap]:
     """The gap and its noise floor."""
     floor = floor_of(known.held_back, config.part_s, measure)
-    gap = gap_of(known.base, (), held_out, config.part_s, measure)
-    return gap, floor_there(floor, known, held_out, config)
+    gap = gap_of(known.base, (), scenes, config.part_s, measure)
+    return gap, floor_there(floor, known, scenes, config)

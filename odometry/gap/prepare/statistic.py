@@ -84,6 +84,33 @@ class Gap:
         """
         return float(np.hypot(self.value - self.low, floor.high - floor.value))
 
+    def is_surely_above(self, floor: "Gap", times: float) -> bool:
+        """Whether it is above the floor by so many times what the difference is known to."""
+        return self.value - floor.value > times * self.doubt_above(floor)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A gap before anything is added, and its noise floor: on held-out data, and as measured.
+
+    Nothing was fitted to either.
+    """
+
+    held_out: tuple[Gap, Gap]
+    measured: tuple[Gap, Gap]
+
+    def is_sure(self, times: float) -> bool:
+        """Whether it is surely above its floor on held-out data.
+
+        Or as measured, and there beyond the interval of the floor: few stretches are held out, and
+        what acts in some of them has a wide interval.
+        """
+        gap, floor = self.held_out
+        if gap.is_surely_above(floor, times):
+            return True
+        measured, by_noise = self.measured
+        return gap.value > floor.high and measured.is_surely_above(by_noise, times)
+
 
 def squared_errors(
     base: Base,

@@ -167,7 +167,14 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
     if held.after.value > held.before.value:
         return f"{what} gets worse, {change}: do not trust the name."
     said = f"{what} falls {change}; {floor}"
-    if share is None:
+    if share is None and is_doubtful(result):
+        fitted = result.closings[0]
+        said += (
+            ", too near for a share on so few stretches; the measured runs had "
+            f"{of_two_figures(fitted.before)}, have {of_two_figures(fitted.after)}, and their "
+            f"noise floor is {of_two_figures(fitted.noise_floor)}"
+        )
+    elif share is None:
         said += ", which the gap before hardly exceeds"
     else:
         below = ", down to the noise" if share.value > 1 else ""

@@ -1,6 +1,7 @@
 """A gap that headings or the gyroscope show, and positions do not."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -59,9 +60,10 @@ def test_a_robot_that_turns_less_is_no_model_as_it_is(less_turn):
 
 
 def test_without_a_measured_yaw_positions_decide(less_turn):
-    known, held = less_turn.calibration, less_turn.holdout_scenes
-    assert measures_of(known, held, GapConfig(), has_yaw=True) == (Measure.HEADING,)
-    found = measures_of(known, held, GapConfig(), has_yaw=False)
+    scenes = less_turn.measured_scenes, less_turn.holdout_scenes
+    of = partial(measures_of, less_turn.calibration, *scenes, GapConfig())
+    assert of(has_yaw=True) == (Measure.HEADING,)
+    found = of(has_yaw=False)
     assert found[-1] is Measure.POSITION
 
 

@@ -27,7 +27,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.pieces import numbered_pieces
-from odometry.gap.prepare.statistic import Gap, Measure, sure_sum
+from odometry.gap.prepare.statistic import Gap, Measure, Shown, sure_sum
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot
 
@@ -170,9 +170,28 @@ def test_names_leave_no_structure(discovered):
 )
 def test_a_name_needs_a_gap_that_is_surely_above_the_floor(low, high, stands):
     """0.02 m above it: more than 0.016 and 0.011 at right angles, less than 0.016 and 0.013."""
-    reason = within_noise(Gap(0.05, low, 0.06), Gap(0.03, 0.025, high), CONFIG)
+    held_out = Gap(0.05, low, 0.06), Gap(0.03, 0.025, high)
+    reason = within_noise(Shown(held_out, (Gap(0.03, 0.02, 0.04), held_out[1])), CONFIG)
     assert (reason == "") == stands
     assert stands or "0.05 m, is not surely above the noise floor" in reason
+
+
+@pytest.mark.parametrize(
+    ("held", "measured", "stands"),
+    [
+        ((0.05, 0.02, 0.09), (0.07, 0.05, 0.09), True),
+        ((0.05, 0.02, 0.09), (0.07, 0.02, 0.12), False),
+        ((0.034, 0.02, 0.09), (0.07, 0.05, 0.09), False),
+    ],
+)
+def test_few_stretches_that_differ_are_enough_where_the_measured_ones_are_sure(
+    held, measured, stands
+):
+    """Held-out data alone are never sure here, and once are within the interval of the floor."""
+    floor = Gap(0.03, 0.025, 0.035)
+    assert (
+        within_noise(Shown((Gap(*held), floor), (Gap(*measured), floor)), CONFIG) == ""
+    ) == stands
 
 
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])

@@ -109,6 +109,17 @@ def test_a_worse_gap_is_said_in_words(scaled_result):
     assert said[1].endswith("do not trust the name.")
 
 
+def test_where_few_stretches_are_held_out_the_measured_runs_say_how_much(scaled_result):
+    held = scaled_result.holdout
+    near = replace(held.noise_floor, value=0.97 * held.before.value)
+    result = replace(scaled_result, holdout=replace(held, noise_floor=near))
+    _, how_sure, *_ = sentences(result)
+    assert held_out_share(result) is None
+    fitted = result.measured
+    assert "too near for a share on so few stretches" in how_sure
+    assert f"measured runs had {fitted.before.value:.2g} m, have" in how_sure
+
+
 def test_none_claims_nothing(none_result):
     said = sentences(none_result)
     assert said[0] == "Nothing that these runs could show is missing in icr (none)."
