@@ -53,6 +53,20 @@ def is_there(fit: Fitted, config: GapConfig) -> bool:
     return bool(away @ information @ away > config.sure**2 * known.sum())
 
 
+def essence_spans_none(fit: Fitted, place: int) -> bool:
+    """Whether the intervals of all that makes one effect of a fit what it is span none."""
+    begin = sum(len(one.values) for one in fit.effects[:place])
+    added = fit.effects[place]
+    sigmas = np.sqrt(np.maximum(np.diag(fit.covariance)[begin : begin + len(added.values)], 0.0))
+    return all(
+        abs(value - (parameter.absent or 0.0)) < WITHIN_95 * sigma
+        for parameter, value, sigma in zip(
+            added.effect.parameters, added.values, sigmas, strict=True
+        )
+        if parameter.name in added.effect.essential
+    )
+
+
 def within_bounds(fit: Fitted, config: GapConfig) -> str:
     """No parameter of the effect's strength may end at a bound, nor its interval span the bounds.
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
-from odometry.effects.time_course import FromAMoment
+from odometry.effects.time_course import FromAMoment, Gradual, InBursts
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_moments import with_own_moments
@@ -84,9 +84,10 @@ class Standing(Search):
             return found
         structure = structure_left(self.fitter, found.fitted, self.config)
         of_gap, spread = (left, self.held_floor), self.fitter.spread(found.fitted)
+        least = self._least_of_rest(found.effects)
         reason = (
             closes_a_part(share, self.config)
-            or closes_the_most(share, spread, of_gap, self.config)
+            or closes_the_most(share, spread, of_gap, least, self.config)
             or leaves_no_structure(share, structure)
         )
         if not reason:
@@ -115,6 +116,16 @@ class Standing(Search):
         """Share of an excess that these need to close where they leave what is not noise."""
         by_contact = any(effect.slow for effect in names)
         return self.config.contact_closed if by_contact else self.config.mostly_closed
+
+    def _least_of_rest(self, names: Sequence[Effect]) -> float:
+        """The same on held-out data, less of names that are never exact there.
+
+        Forces of contacts, what comes slowly or in bursts, and faults of the reference.
+        """
+        never = {Gradual.name, InBursts.name}
+        if any(one.slow or one.of_reference or one.course in never for one in names):
+            return self.config.least_of_rest
+        return self.config.mostly_closed
 
     def _most_fitted(self, names: Sequence[Effect]) -> float:
         """The same on the measured runs, whose moments are known: what begins at one closes more.

@@ -15,7 +15,7 @@ from odometry.effects.time_course import FromAMoment
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of, penalty
 from odometry.gap.fit.course import CHOSEN, best_course
-from odometry.gap.fit.effect_values import is_meant
+from odometry.gap.fit.effect_values import essence_spans_none, is_meant
 from odometry.gap.fit.evenness import unevenness
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.input_noise import surely_dearer
@@ -82,7 +82,9 @@ def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) ->
     if closed or not added.effect.essential:
         return closed
     rise = fitter.rise_without(fit, place, added.effect.essential)
-    return is_sure_of_its_essence(added, rise / max(1.0, fitter.spread(fit)), config)
+    in_spreads = rise / max(1.0, fitter.spread(fit))
+    spans_none = essence_spans_none(fit, place)
+    return is_sure_of_its_essence(added, in_spreads, config, spans_none=spans_none)
 
 
 def closes_without_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:

@@ -66,14 +66,16 @@ def is_by_its_essence(without: float, added: Added, config: GapConfig) -> str:
     )
 
 
-def is_sure_of_its_essence(added: Added, rise: float, config: GapConfig) -> str:
+def is_sure_of_its_essence(
+    added: Added, rise: float, config: GapConfig, *, spans_none: bool
+) -> str:
     """Whether the parameters that make a name what it is surely differ from none.
 
     `rise` is that of chi-squared, in units of what is left a degree of freedom, where they are none
-    and all others are fitted anew: the interval of one alone is wide where another does nearly the
-    same.
+    and all others are fitted anew: the interval of one alone, which `spans_none`, may be wide where
+    another does nearly the same.
     """
-    if rise > config.sure**2:
+    if rise > (config.surely if spans_none else config.sure) ** 2:
         return ""
     names = ", ".join(added.effect.essential)
     return f"{names}, which makes it this effect, cannot be distinguished from none"

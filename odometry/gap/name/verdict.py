@@ -160,16 +160,16 @@ def closes_a_part(share_closed: float, config: GapConfig) -> str:
 
 
 def closes_the_most(
-    share_closed: float, spread: float, left: tuple[Gap, Gap], config: GapConfig
+    share_closed: float, spread: float, left: tuple[Gap, Gap], least: float, config: GapConfig
 ) -> str:
-    """Whether names that leave more than noise close at least half of the excess held out.
+    """Whether names that leave more than noise close at least a share of the excess held out.
 
     `spread` is the chi-squared a degree of freedom that they leave on the measured runs, `left`
     the gap that they leave on held-out data, and its noise floor.
     """
     gap, floor = left
     noise = spread <= config.unexplained and gap.low <= floor.high
-    if share_closed >= config.least_of_rest or noise:
+    if share_closed >= least or noise:
         return ""
     return (
         f"it closes {100 * max(share_closed, 0.0):.0f} % of the {gap.measure.noun} on held-out "

@@ -13,6 +13,7 @@ from odometry.effects.sensor_mount import HeadingOffset
 from odometry.effects.time_offset import ClockDrift, TimeOffset
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.effect_values import essence_spans_none
 from odometry.gap.name.form_gates import (
     is_most_of,
     is_of_stamps,
@@ -26,11 +27,28 @@ from odometry.gap.name.form_gates import (
 CONFIG = GapConfig()
 
 
-@pytest.mark.parametrize(("rise", "refused"), [(9.1, False), (8.9, True), (-1.0, True)])
-def test_a_name_is_sure_of_what_makes_it_what_it_is(rise, refused):
+@pytest.mark.parametrize(
+    ("rise", "spans_none", "refused"),
+    [(9.1, False, False), (8.9, False, True), (-1.0, False, True), (99.0, True, True)]
+    + [(101.0, True, False)],
+)
+def test_a_name_is_sure_of_what_makes_it_what_it_is(rise, spans_none, refused):
     curvature = Added(Curvature(), np.array([1.2, 0.3, 0.5]))
-    reason = is_sure_of_its_essence(curvature, rise, GapConfig())
+    reason = is_sure_of_its_essence(curvature, rise, GapConfig(), spans_none=spans_none)
     assert ("beta_1, which makes it this effect" in reason) == refused
+
+
+@pytest.mark.parametrize(("sigma", "spans"), [(0.16, True), (0.15, False)])
+def test_the_interval_of_what_makes_a_name_spans_none(sigma, spans):
+    """Of beta_1 = 0.3, the second of three numbers behind one of another effect."""
+    fit = SimpleNamespace(
+        effects=(
+            Added(TimeOffset(), np.array([0.1])),
+            Added(Curvature(), np.array([1.2, 0.3, 0.5])),
+        ),
+        covariance=np.diag([1.0, 0.1, sigma, 2.0]) ** 2,
+    )
+    assert essence_spans_none(fit, 1) == spans
 
 
 @pytest.mark.parametrize(("closed", "stands"), [(91.0, True), (89.0, False)])

@@ -200,18 +200,19 @@ def test_a_name_closes_more_than_a_small_part(share, stands):
 
 
 @pytest.mark.parametrize(
-    ("share", "spread", "least_m", "stands"),
+    ("share", "spread", "least_m", "least", "stands"),
     [
-        (0.43, 2.0, 0.1, False),
-        (0.43, 1.1, 0.1, True),
-        (0.43, 1.1, 0.13, False),
-        (0.6, 2.0, 0.13, True),
+        (0.43, 2.0, 0.1, 0.5, False),
+        (0.43, 1.1, 0.1, 0.5, True),
+        (0.43, 1.1, 0.13, 0.5, False),
+        (0.6, 2.0, 0.13, 0.5, True),
+        (0.6, 2.0, 0.13, 0.8, False),
     ],
 )
-def test_a_name_that_leaves_more_than_noise_closes_half(share, spread, least_m, stands):
+def test_a_name_that_leaves_more_than_noise_closes_the_most(share, spread, least_m, least, stands):
     """Of chi-squared on the measured runs, or of the gap on held-out data."""
     left = Gap(0.2, least_m, 0.3), Gap(0.1, 0.08, 0.12)
-    assert (closes_the_most(share, spread, left, CONFIG) == "") == stands
+    assert (closes_the_most(share, spread, left, least, CONFIG) == "") == stands
 
 
 def test_positions_may_not_rise_where_headings_are_judged(make_scene, monkeypatch):
