@@ -29,8 +29,13 @@ CONFIG = GapConfig()
 
 @pytest.mark.parametrize(
     ("rise", "spans_none", "refused"),
-    [(9.1, False, False), (8.9, False, True), (-1.0, False, True), (99.0, True, True)]
-    + [(101.0, True, False)],
+    [
+        (9.1, False, False),
+        (8.9, False, True),
+        (-1.0, False, True),
+        (99.0, True, True),
+        (101.0, True, False),
+    ],
 )
 def test_a_name_is_sure_of_what_makes_it_what_it_is(rise, spans_none, refused):
     curvature = Added(Curvature(), np.array([1.2, 0.3, 0.5]))
