@@ -26,6 +26,7 @@ from odometry.gap.locate.locate import locate
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.held_out import apart, held_out_pieces
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.rounding import rounding_notes
@@ -104,17 +105,18 @@ def find_gap(
     robot = robot_of([*calibration, *measured, *holdout])
     headings = headed([*measured, *calibration, *holdout])
     measured, calibration, holdout = dealt(headings.runs, len(measured), len(calibration))
-    config = for_positions(for_chains(config, headings.runs), headings)
-    known_scenes, fitted_scenes, held_scenes = alike(
+    config, yaw = for_positions(for_chains(config, headings.runs), headings), not headings.found
+    known_scenes, whole, held = alike(
         [scene_of(run, config) for run in calibration],
         *scenes_of(measured, holdout, config),
     )
     known = by_terrain(
         calibrated(known_scenes, model or Icr(), robot, config, given), known_scenes, config
     )
-    raw_scenes = fitted_scenes, held_scenes
+    numbers = None if holdout else held_out_pieces(whole, known, config, has_yaw=yaw)
+    raw_scenes = apart((whole, held), numbers, config)
     fitted_scenes, held_scenes, outliers = without_outliers(
-        (measured, holdout), raw_scenes, known_scenes, known, config
+        (measured, holdout), (whole, held), numbers, (known_scenes, known), config
     )
     floor = floor_of(known.held_back, config.part_s)
     fitter = Fitter(known, measured_of(fitted_scenes, known, config))

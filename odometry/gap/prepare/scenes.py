@@ -5,20 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray
+from odometry.arrays import BoolArray, IntArray
 from odometry.effects.reference_outliers import JumpingPoses
-from odometry.errors import GapError
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.frozen import Isolated
+from odometry.gap.prepare.held_out import apart
 from odometry.gap.prepare.jumps import Jumps
 from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
-from odometry.gap.prepare.pieces import held_back
 from odometry.gap.prepare.rounding import rounded_m
 from odometry.positions.heading import Headed
 from odometry.run import Run
 from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of, thinned
+from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of
 
 SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
 SLOWEST_M_S = 0.05  # of a mean speed: a stationary robot has no horizon
@@ -41,23 +40,11 @@ def scene_of(run: Run, config: GapConfig) -> DenseWindows:
 def scenes_of(
     measured: Sequence[Run], holdout: Sequence[Run], config: GapConfig
 ) -> tuple[list[DenseWindows], list[DenseWindows]]:
-    """Scenes to fit and scenes to evaluate."""
-    scenes = [scene_of(run, config).numbered(number) for number, run in enumerate(measured)]
-    if holdout:
-        held = [
-            scene_of(run, config).numbered(number)
-            for number, run in enumerate(holdout, start=len(measured))
-        ]
-    else:
-        outs = [held_back(scene, config.part_s, config.held_back) for scene in scenes]
-        held = [s.where(out) for s, out in zip(scenes, outs, strict=True) if out.any()]
-        scenes = [s.where(~out) for s, out in zip(scenes, outs, strict=True) if not out.all()]
-        if not held or not scenes:
-            raise GapError(
-                "the measured runs are too short to hold stretches of them back: expected "
-                f"{config.held_back * config.part_s:g} s or more with moving treads, or --holdout"
-            )
-    return [thinned(scene, config.most_windows) for scene in scenes], held
+    """Scenes of measured and of held-out runs, numbered on."""
+    scenes = [
+        scene_of(run, config).numbered(number) for number, run in enumerate([*measured, *holdout])
+    ]
+    return scenes[: len(measured)], scenes[len(measured) :]
 
 
 def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
@@ -69,21 +56,24 @@ def alike(*groups: Sequence[DenseWindows]) -> tuple[list[DenseWindows], ...]:
 
 def without_outliers(
     runs: tuple[Sequence[Run], Sequence[Run]],
-    scenes: tuple[list[DenseWindows], list[DenseWindows]],
-    known_scenes: Sequence[DenseWindows],
-    known: Calibration,
+    groups: tuple[list[DenseWindows], list[DenseWindows]],
+    numbers: Sequence[IntArray] | None,
+    calibration: tuple[Sequence[DenseWindows], Calibration],
     config: GapConfig,
 ) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
-    """Measured and held-out scenes without poses that are far off, where that closes some gap."""
-    held_out = scenes[1] if runs[1] else ()
-    outliers = outliers_of(scenes[0], held_out, known_scenes, known, config)
+    """Scenes to fit and to evaluate without poses that are far off, where that closes some gap.
+
+    Of all runs: each of these poses is off by itself, and nothing was fitted to find it.
+    """
+    known_scenes, known = calibration
+    scenes = apart(groups, numbers, config)
+    outliers = outliers_of(*groups, known_scenes, known, config)
     if outliers is None:
         return *scenes, None
-    cut = scenes_of(*cleaned_runs(*runs, outliers), config)
-    _, fitted_scenes, held_scenes = alike(known_scenes, *cut)
-    if not closes(scenes[1], held_scenes, known.base, config):
+    _, *cut = alike(known_scenes, *scenes_of(*cleaned_runs(*runs, outliers), config))
+    if not closes([*groups[0], *groups[1]], [*cut[0], *cut[1]], known.base, config):
         return *scenes, None
-    return fitted_scenes, held_scenes, outliers
+    return *apart((cut[0], cut[1]), numbers, config), outliers
 
 
 def cleaned_runs(

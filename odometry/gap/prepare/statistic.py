@@ -20,6 +20,7 @@ from odometry.windows.dense_noise import added_travel_m
 
 RESAMPLES = 1000
 SEED = 0
+BY_NOISE = 3.0  # times what noise alone scatters at 95 %: it has heavier tails than intervals say
 MANY = 5  # pieces; of fewer even the largest and the least value hold less than 95 %
 
 
@@ -73,16 +74,25 @@ class Gap:
         return self.pieces > 1
 
     def is_above(self, floor: "Gap") -> bool:
-        """Whether the floor lies below the whole interval; never without one."""
-        return self.has_interval and self.low > floor.value
+        """Whether the floor lies below the whole interval, or noise alone would not reach so far.
+
+        Never without an interval.
+        """
+        return self.has_interval and (self.low > floor.value or self.is_surely_above(floor, 1.0))
 
     def doubt_above(self, floor: "Gap") -> float:
         """To what the difference to the floor is known.
 
         From both intervals to the lower bound of a difference of two values that have intervals of
-        their own (Zou and Donner 2008, Statistics in Medicine 27, 1693).
+        their own (Zou and Donner 2008, Statistics in Medicine 27, 1693). That of a gap is wide
+        where an effect acts in few stretches, though noise alone, in as many of them, would not
+        reach it: so it is no more than some times what the floor scatters there.
         """
-        return float(np.hypot(self.value - self.low, floor.high - floor.value))
+        by_both = float(np.hypot(self.value - self.low, floor.high - floor.value))
+        if not floor.has_interval:
+            return by_both
+        as_many = float(np.sqrt(floor.pieces / self.pieces)) * (floor.high - floor.value)
+        return min(by_both, BY_NOISE * as_many)
 
     def is_surely_above(self, floor: "Gap", times: float) -> bool:
         """Whether it is above the floor by so many times what the difference is known to."""

@@ -77,7 +77,7 @@ def is_not_held_out(result: GapResult) -> bool:
     return (
         result.verdict == "unknown"
         and is_doubtful(result)
-        and held.before.low <= held.noise_floor.high
+        and not held.before.is_above(held.noise_floor)
     )
 
 

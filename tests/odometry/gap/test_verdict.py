@@ -166,7 +166,7 @@ def test_names_leave_no_structure(discovered):
 
 @pytest.mark.parametrize(
     ("low", "high", "stands"),
-    [(0.034, 0.041, True), (0.034, 0.043, False), (0.029, 0.03, False), (0.05, 0.049, True)],
+    [(0.034, 0.041, True), (0.034, 0.043, False), (0.029, 0.037, False), (0.05, 0.049, True)],
 )
 def test_a_name_needs_a_gap_that_is_surely_above_the_floor(low, high, stands):
     """0.02 m above it: more than 0.016 and 0.011 at right angles, less than 0.016 and 0.013."""
@@ -180,7 +180,7 @@ def test_a_name_needs_a_gap_that_is_surely_above_the_floor(low, high, stands):
     ("held", "measured", "stands"),
     [
         ((0.05, 0.02, 0.09), (0.07, 0.05, 0.09), True),
-        ((0.05, 0.02, 0.09), (0.07, 0.02, 0.12), False),
+        ((0.05, 0.02, 0.09), (0.06, 0.02, 0.10), False),
         ((0.034, 0.02, 0.09), (0.07, 0.05, 0.09), False),
     ],
 )
@@ -188,10 +188,17 @@ def test_few_stretches_that_differ_are_enough_where_the_measured_ones_are_sure(
     held, measured, stands
 ):
     """Held-out data alone are never sure here, and once are within the interval of the floor."""
-    floor = Gap(0.03, 0.025, 0.035)
+    floor = Gap(0.03, 0.02, 0.042)
     assert (
         within_noise(Shown((Gap(*held), floor), (Gap(*measured), floor)), CONFIG) == ""
     ) == stands
+
+
+@pytest.mark.parametrize(("value", "sure"), [(0.16, True), (0.06, False)])
+def test_a_gap_that_noise_alone_does_not_reach_is_sure_though_its_stretches_differ(value, sure):
+    """As that of robots that are seldom fast: 0.0046 m scatter in 20 stretches, 0.0103 in four."""
+    gap, floor = Gap(value, 0.03, 0.27, 4), Gap(0.0316, 0.027, 0.0362, 20)
+    assert gap.is_surely_above(floor, 1.0) == sure
 
 
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
