@@ -64,7 +64,7 @@ class GapConfig:
         Share by which a wheel may seem larger from a moment on: twice what is left of a true one.
     no_farther : float
         Share by which positions, within their noise, may be farther off where headings or the
-        gyroscope are judged: true names moved them by 0.005, a tenth of their interval.
+        gyroscope are judged: true names moved them by 0.011 at most, far less than their interval.
     unexplained : float
         Chi-squared a degree of freedom above which what is left is not noise.
     left_over, mostly_closed, contact_closed, bursts_closed : float
@@ -170,7 +170,7 @@ class GapConfig:
     least_better: float = 0.005
     least_beside: float = 0.5
     main_part: float = 0.9
-    no_farther: float = 0.01
+    no_farther: float = 0.02
     largest_growth: float = 0.02
     unexplained: float = 1.3
     left_over: float = 1.5
@@ -180,7 +180,7 @@ class GapConfig:
     above_floor: float = 1.0
     turns_above: float = 1.5
     turns_times: float = 2.0
-    hardly: float = 1.2
+    hardly: float = 1.5
     least_held_out: float = 0.1
     least_of_rest: float = 0.5
     least_of_all: float = 0.7

@@ -105,7 +105,7 @@ def find_gap(
     robot = robot_of([*calibration, *measured, *holdout])
     headings = headed([*measured, *calibration, *holdout])
     measured, calibration, holdout = dealt(headings.runs, len(measured), len(calibration))
-    config, yaw = for_positions(for_chains(config, headings.runs), headings), not headings.found
+    config = for_positions(for_chains(config, headings.runs), headings)
     known_scenes, whole, held = alike(
         [scene_of(run, config) for run in calibration],
         *scenes_of(measured, holdout, config),
@@ -113,7 +113,7 @@ def find_gap(
     known = by_terrain(
         calibrated(known_scenes, model or Icr(), robot, config, given), known_scenes, config
     )
-    numbers = None if holdout else held_out_pieces(whole, known, config, has_yaw=yaw)
+    numbers = None if holdout else held_out_pieces(whole, config)
     raw_scenes = apart((whole, held), numbers, config)
     fitted_scenes, held_scenes, outliers = without_outliers(
         (measured, holdout), (whole, held), numbers, (known_scenes, known), config
