@@ -33,6 +33,7 @@ from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.slope_drift import SlopeDrift
 from odometry.effects.slope_icr import SlopeByIcr
 from odometry.effects.straight_lines import StraightLines
 from odometry.effects.terrain import NewIcrs, Terrain
@@ -73,6 +74,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     Terrain,
     NewIcrs,
     SlopeByIcr,
+    SlopeDrift,
     SlopeByContact,
     InertiaByIndices,
     InertiaByContact,
