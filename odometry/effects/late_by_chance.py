@@ -13,6 +13,7 @@ from odometry.effects.time_offset import BY_GYROSCOPE
 
 EARLY_S = 0.02  # mean of the stamps, from which they are early
 LEAST_S = 0.01  # standard deviation of stamps about even ones
+LEAST_SHARE = 0.75  # of what stamps are uneven by: of poses that were measured evenly it is all
 
 
 class LateByChance(MeasurementEffect):
@@ -54,8 +55,8 @@ class LateByChance(MeasurementEffect):
         return "poses whose stamps are early, some by more than others (cut to a coarse step)"
 
     def is_meant(self, values: FloatArray) -> bool:
-        """See `Effect.is_meant`: uneven stamps are late, not measured so."""
-        return bool(values[0] > 0)
+        """See `Effect.is_meant`: uneven stamps are late, not measured so; not half of both."""
+        return bool(values[0] > LEAST_SHARE)
 
     def delay_s(
         self,

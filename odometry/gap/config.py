@@ -28,7 +28,10 @@ class GapConfig:
     least_evidence : float
         That a name needs (twice the gain of log-likelihood, less the penalty), as a lower bound.
     trimmed : int
-        Pieces of the runs without which a gain must still be one.
+        Pieces of the runs without which a gain must still be one; or so many of them at least,
+        each far off before, are brought within the noise floor.
+    far_off : float
+        In how many times its upper bound a piece is far off: noise never reaches that.
     least_share : float
         And must close this share of the excess that was there before any effect.
     least_rest : float
@@ -157,6 +160,7 @@ class GapConfig:
     held_back: int = 4
     least_evidence: float = 12.0
     trimmed: int = 2
+    far_off: float = 2.0
     least_share: float = 0.02
     least_rest: float = 0.3
     first_share: float = 0.1

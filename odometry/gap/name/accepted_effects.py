@@ -199,8 +199,8 @@ class Standing(Search):
                     (base, effects[: len(less)]),
                     (fit.base, effects),
                     held_out,
+                    self.held_floor,
                     self.config,
-                    measure,
                 )
                 for base, less in pairs
             ),

@@ -161,7 +161,7 @@ class Search:
         believed = (self.fitter.calibration.base, ())
         moved = (self.start.base, ())
         return self._left(self.start) and not closes_held_out(
-            believed, moved, self.held_out, self.config, self.floor.measure
+            believed, moved, self.held_out, self.held_floor, self.config
         )
 
     def _gap(self, fit: Fitted) -> float:

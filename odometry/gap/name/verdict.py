@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.config import GapConfig
@@ -68,15 +69,17 @@ def closes_held_out(
     before: tuple[Base, Sequence[Added]],
     after: tuple[Base, Sequence[Added]],
     held_out: Sequence[DenseWindows],
+    floor: Gap,
     config: GapConfig,
-    measure: Measure = Measure.POSITION,
 ) -> str:
-    """Whether the gap on held-out data is less after than before, surely.
+    """Whether the gap on held-out data is less after than before, surely; by the floor's measure.
 
-    It must not be greater, nor that of positions by more than a hundredth, and the paired interval
+    It must not be greater, nor that of positions by more than `no_farther`, and the paired interval
     of 95 % of the difference must lie above zero: that of the gap, that of the mean error, which a
     few windows in which a model fails do not decide, or the sum without the pieces that gain most.
+    Or several pieces that are far above the floor are all brought within it.
     """
+    measure = floor.measure
     if measure is not Measure.POSITION:
         was, now = (root_mean_square(*of, held_out, Measure.POSITION) for of in (before, after))
         if now > was * (1 + config.no_farther):
@@ -93,13 +96,25 @@ def closes_held_out(
     means = drawn_gaps(kinds, held_out, config.part_s, rng) ** 2
     lows = np.quantile([means[0] - means[1], means[2] - means[3]], 0.025, axis=1)
     _, piece = np.unique(numbered_pieces(held_out, config.part_s), return_inverse=True)
-    of_pieces = np.asarray(np.bincount(piece, weights=squares[0] - squares[1]), dtype=np.float64)
-    if (lows > 0).any() or sure_sum(of_pieces, config.trimmed) > 0:
+    sums = np.array([np.bincount(piece, weights=of) for of in squares])
+    if (lows > 0).any() or sure_sum(sums[0] - sums[1], config.trimmed) > 0:
+        return ""
+    if brings_within(np.sqrt(sums / np.bincount(piece)), floor, config):
         return ""
     return (
         f"on held-out data the {measure.noun} goes from {was:.3g} to {now:.3g} {measure.unit}, "
         "which may be chance"
     )
+
+
+def brings_within(gaps: FloatArray, floor: Gap, config: GapConfig) -> bool:
+    """Whether pieces with gaps (2, P) before and after that are far off are all brought to noise.
+
+    What acts in two pieces of five leaves the others as they are: they say nothing, and in a sum
+    without the best two nothing is left. No chance brings each of these within the floor.
+    """
+    far = gaps[0] > config.far_off * floor.high
+    return int(far.sum()) >= config.trimmed and bool((gaps[1][far] <= floor.high).all())
 
 
 def _worse(was: float, now: float, measure: Measure) -> str:

@@ -37,6 +37,7 @@ def test_it_is_a_candidate_where_stamps_are_uneven(bench, rng, most_s, count):
 def test_early_stamps_are_no_late_ones():
     assert LateByChance().is_meant(np.array([1.0, 0.0]))
     assert not LateByChance().is_meant(np.array([-0.5, 0.0]))
+    assert not LateByChance().is_meant(np.array([0.57, 0.05]))
 
 
 @pytest.mark.parametrize(("offset_s", "word"), [(0.05, "later"), (-0.01, "later"), (-0.1, "early")])

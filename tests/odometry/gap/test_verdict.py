@@ -1,5 +1,7 @@
 """What a name must pass: it is what it says, within its bounds, and closes what was held out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,7 @@ from odometry.gap.fit.fitter import Fitted
 from odometry.gap.locate.predictors import Predictor
 from odometry.gap.name.verdict import (
     base_left_calibration,
+    brings_within,
     closes_a_part,
     closes_held_out,
     closes_the_most,
@@ -32,6 +35,7 @@ from odometry.models.catalogue import MODELS
 from odometry.run import Robot
 
 CONFIG = GapConfig()
+FLOOR = Gap(0.02, 0.015, 0.025)
 
 
 def fitted(effect, values, covariance):
@@ -96,7 +100,7 @@ def test_a_name_must_close_what_was_held_out(make_scene, known, factor, stands):
     """Wheels slip by a fifth: the right scale, none, and one of the other sign."""
     held = [make_scene(4, lambda _, twist: 0.8 * twist)]
     scale = Added(WheelScale(), np.array([factor, factor]))
-    reason = closes_held_out((known.base, ()), (known.base, (scale,)), held, CONFIG)
+    reason = closes_held_out((known.base, ()), (known.base, (scale,)), held, FLOOR, CONFIG)
     assert (reason == "") == stands
     assert factor < 1.1 or "gets worse" in reason
 
@@ -109,7 +113,7 @@ def test_a_gain_that_may_be_chance_closes_nothing(make_scene, monkeypatch, gain_
     scatter = np.random.default_rng(0).normal(scale=0.05, size=piece.max() + 1)
     errors = iter([np.full(len(piece), 0.2), 0.2 - gain_m + (scatter - scatter.mean())[piece]])
     monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", lambda *_: next(errors) ** 2)
-    found = closes_held_out((None, ()), (None, ()), [scene], CONFIG)
+    found = closes_held_out((None, ()), (None, ()), [scene], FLOOR, CONFIG)
     assert found == reason if not reason else reason in found
 
 
@@ -123,7 +127,19 @@ def test_a_gain_counts_by_the_mean_error_where_a_few_pieces_hold_the_squares(
     after = after - 0.02 * (piece == 0) + 0.019 * (piece == 1)
     errors = iter([before, after])
     monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", lambda *_: next(errors) ** 2)
-    assert closes_held_out((None, ()), (None, ()), [scene], CONFIG) == ""
+    assert closes_held_out((None, ()), (None, ()), [scene], FLOOR, CONFIG) == ""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "stands"),
+    [
+        ([0.1, 0.02, 0.2, 0.02], [0.02, 0.02, 0.025, 0.021], True),  # as slip backward only
+        ([0.1, 0.02, 0.2, 0.02], [0.02, 0.02, 0.03, 0.021], False),  # one is not brought within
+        ([0.1, 0.02, 0.04, 0.02], [0.02, 0.02, 0.02, 0.02], False),  # one alone is far off
+    ],
+)
+def test_pieces_that_are_far_off_are_all_brought_within_the_floor(before, after, stands):
+    assert brings_within(np.array([before, after]), FLOOR, CONFIG) == stands
 
 
 def test_a_sum_is_sure_where_it_is_alike_or_lasts_without_the_best():
@@ -223,7 +239,7 @@ def test_a_name_that_leaves_more_than_noise_closes_the_most(share, spread, least
 
 
 def test_positions_may_not_rise_where_headings_are_judged(make_scene, monkeypatch):
-    """Headings that fall by half, beside positions that rise by half a per cent and by two."""
+    """Headings that fall by half, beside positions that rise by half a per cent and by three."""
     held = [make_scene(4)]
     errors = {Measure.HEADING: (0.1, 0.05), Measure.POSITION: (0.1, 0.1005)}
     stages = {"before": 0, "after": 1}
@@ -237,7 +253,8 @@ def test_positions_may_not_rise_where_headings_are_judged(make_scene, monkeypatc
         lambda stage, _, __, measure: errors[measure][stages[stage]],
     )
     sides = ("before", ()), ("after", ())
-    assert closes_held_out(*sides, held, CONFIG, Measure.HEADING) == ""
-    errors[Measure.POSITION] = (0.1, 0.102)
-    reason = closes_held_out(*sides, held, CONFIG, Measure.HEADING)
+    of_headings = replace(FLOOR, measure=Measure.HEADING)
+    assert closes_held_out(*sides, held, of_headings, CONFIG) == ""
+    errors[Measure.POSITION] = (0.1, 0.103)
+    reason = closes_held_out(*sides, held, of_headings, CONFIG)
     assert reason.startswith("the gap on held-out data gets worse")
