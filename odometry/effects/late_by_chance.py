@@ -11,7 +11,7 @@ from odometry.effects.pose_stamps import uneven_s
 from odometry.effects.recorded import Recorded
 from odometry.effects.time_offset import BY_GYROSCOPE
 
-EARLY_S = 0.02  # mean of the stamps, from which they are early
+EARLY_S = 0.02  # mean of the stamps, from which they are early, or all late
 LEAST_S = 0.01  # standard deviation of stamps about even ones
 LEAST_SHARE = 0.75  # of what stamps are uneven by: of poses that were measured evenly it is all
 
@@ -50,9 +50,13 @@ class LateByChance(MeasurementEffect):
 
     def in_words_at(self, values: FloatArray) -> str:
         """See `Effect.in_words_at`: stamps that are cut to a coarse step are early."""
-        if values[1] > -EARLY_S:
-            return self.in_words
-        return "poses whose stamps are early, some by more than others (cut to a coarse step)"
+        if values[1] < -EARLY_S:
+            return "poses whose stamps are early, some by more than others (cut to a coarse step)"
+        return (
+            self.in_words
+            if values[1] < EARLY_S
+            else self.in_words.replace("some", "all late, some")
+        )
 
     def is_meant(self, values: FloatArray) -> bool:
         """See `Effect.is_meant`: uneven stamps are late, not measured so; not half of both."""
