@@ -41,8 +41,8 @@ def test_early_stamps_are_no_late_ones():
 
 
 @pytest.mark.parametrize(
-    ("offset_s", "word"),
+    ("offset_s", "words"),
     [(0.05, "arrive, all late, some later"), (-0.01, "arrive, some later"), (-0.1, "early")],
 )
-def test_stamps_are_called_as_late_or_early_as_they_are_in_the_mean(offset_s, word):
-    assert word in LateByChance().in_words_at(np.array([1.0, offset_s]))
+def test_stamps_are_called_as_late_or_early_as_they_are_in_the_mean(offset_s, words):
+    assert words in LateByChance().in_words_at(np.array([1.0, offset_s]))
