@@ -1,14 +1,16 @@
 """Sensors of the same motion, and headings, that differ where no known cause explains it."""
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from odometry.checks.carried import carried_along
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.heading import headings
+from odometry.checks.heading import Heading, across_m, along_m, headings
 from odometry.checks.heading_spans import heading_spans
+from odometry.checks.motion import Motion
 from odometry.checks.position_differences import (
     paths_apart,
     positions_apart,
@@ -132,6 +134,7 @@ LEAST_SPANS = 30
 PIECES = 8  # of the recording, in each of which yaw has one offset to the course
 PIECE_HELD = 0.9  # concentration in a piece
 OFFSETS_RAD = np.radians(25)  # between pieces
+MOST_TURN_RAD = 1.0  # within a window that has a course
 
 
 def scales_apart(evidence: Evidence) -> str:
@@ -196,22 +199,46 @@ def headings_apart(evidence: Evidence) -> str:
 
 
 def yaw_wanders(evidence: Evidence) -> str:
-    """Yaw that fits the course in each piece of the recording, with another offset in each."""
-    m = evidence.motion
-    offsets = []
+    """Yaw that fits the course in each piece of the recording, with another offset in each.
+
+    Beside what the robot slips sideways in turns: its course is off its yaw by an arm times how
+    tight the turns of a piece are.
+    """
+    m, found = evidence.motion, []
     count = min(PIECES, len(m) // LEAST_SPANS)
     for rows in np.array_split(np.arange(len(m)), max(count, 1)):
         piece = m.rows(rows)
         heading = headings(piece, evidence.turn_rad(piece)).get("radians")
         if heading is not None and heading.concentration > PIECE_HELD:
-            offsets.append(heading.offset_rad)
-    if len(offsets) < max(count, PIECES) / 2:
+            found.append((heading.offset_rad, _skid(evidence, piece, heading).tightness))
+    if len(found) < max(count, PIECES) / 2:
         return ""
-    middle = np.angle(np.exp(2j * np.array(offsets)).sum()) / 2
-    away = np.angle(np.exp(2j * (np.array(offsets) - middle))) / 2
+    whole = headings(m, evidence.turn_rad(m)).get("radians")
+    arm_m = 0.0 if whole is None else _skid(evidence, m, whole).arm_m
+    offsets = np.array([offset - arm_m * tightness for offset, tightness in found])
+    middle = np.angle(np.exp(2j * offsets).sum()) / 2
+    away = np.angle(np.exp(2j * (offsets - middle))) / 2
     if np.ptp(away) < OFFSETS_RAD:
         return ""
     return (
         f"yaw of pose.csv fits its course with offsets of {np.degrees(away.min()):+.0f} to "
         f"{np.degrees(away.max()):+.0f} degrees in pieces of the recording"
     )
+
+
+class _Skid(NamedTuple):
+    """How tight turns are in the mean [rad/m], and the arm [m] of motion aside in them."""
+
+    tightness: float
+    arm_m: float
+
+
+def _skid(evidence: Evidence, motion: Motion, heading: Heading) -> _Skid:
+    """Of windows with a course: sideways motion is an offset of yaw, and an arm times turns."""
+    turn = evidence.turn_rad(motion)
+    across, along = across_m(motion, heading), along_m(motion, heading)
+    known = np.isfinite(across) & np.isfinite(turn) & (np.abs(turn) < MOST_TURN_RAD)
+    across, along, turn = across[known], along[known], turn[known]
+    tightness = float(along @ turn) / max(float(along @ along), 1e-12)
+    beside = turn - tightness * along
+    return _Skid(tightness, float(beside @ across) / max(float(beside @ beside), 1e-12))

@@ -1,0 +1,37 @@
+"""Yaw that has another offset to the course in each piece of a recording, and robots that skid."""
+
+import numpy as np
+
+from odometry.checks.disagreement import yaw_wanders
+from odometry.checks.evidence import Evidence
+from tests.odometry.checks.faulty import put, yaw
+from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
+
+
+def turning_by_pieces():
+    """Slow circles to the left and to the right, 20 s each."""
+    side = np.sign(np.sin(np.pi * PERIOD_S * np.arange(3200) / 20 + 1e-6))
+    return drive(np.full(3200, 0.3), 0.35 * side)
+
+
+def skidding(run, arm_m):
+    """The same of a robot that turns about a point behind its origin."""
+    heading = run.pose["yaw"]
+    return put(
+        run,
+        "pose",
+        x=run.pose["x"] + arm_m * np.cos(heading),
+        y=run.pose["y"] + arm_m * np.sin(heading),
+    )
+
+
+def test_a_robot_that_skids_in_tight_turns_has_the_same_yaw_in_each_piece():
+    """Its course is 17 degrees off its yaw, to one side in half of the pieces."""
+    assert yaw_wanders(Evidence(skidding(turning_by_pieces(), 0.25))) == ""
+
+
+def test_a_yaw_that_drifts_to_and_fro_wanders():
+    for run in (winding(), skidding(turning_by_pieces(), 0.25)):
+        slow = 0.4 * np.sin(run.pose["t"] / 15)
+        said = yaw_wanders(Evidence(yaw(run, lambda angle, slow=slow: angle + slow)))
+        assert "in pieces of the recording" in said
