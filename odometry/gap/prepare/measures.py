@@ -30,8 +30,11 @@ def measures_of(
         return (Measure.POSITION,)
     for measure in others:
         shown = Shown(*(_on(known, scenes, config, measure) for scenes in (held_out, measured)))
-        gap, floor = shown.held_out
-        if shown.is_sure(config.turns_above) and gap.value > config.turns_times * floor.value:
+        far = all(
+            gap.value > config.turns_times * floor.value
+            for gap, floor in (shown.held_out, shown.measured)
+        )
+        if far and shown.is_sure(config.turns_above):
             return (measure,) if measure is Measure.HEADING else (measure, Measure.POSITION)
     return (Measure.POSITION,)
 
