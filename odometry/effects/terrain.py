@@ -95,7 +95,13 @@ class Terrain(MotionEffect):
 
 
 class NewIcrs(MotionEffect):
-    """ICRs and slip factors of whole runs are shifted: another terrain, whatever its name."""
+    """ICRs and slip factors of whole runs are shifted: another terrain, whatever its name.
+
+    Parameters
+    ----------
+    apart_m : float, optional
+        How far the tread ICRs of the base are apart, where that is known.
+    """
 
     name = "terrain"
     form = "icr_set"
@@ -109,6 +115,21 @@ class NewIcrs(MotionEffect):
         "lateral_skid": DISTINGUISHED_BY,
         "wheel_scale": "a run on the terrain of the calibration, or wheels measured with a tape",
     }
+
+    def __init__(self, apart_m: float | None = None) -> None:
+        self.apart_m = apart_m
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Beside the ICRs of the base."""
+        if recorded.base.model.name != "icr":
+            return (cls(),)
+        left, right, _ = tread_icrs(recorded.base, cls.name)
+        return (cls(float(left - right)),)
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: on no terrain a robot turns against its treads."""
+        return self.apart_m is None or bool(self.apart_m + values[0] - values[1] > 0)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
