@@ -52,11 +52,8 @@ class LateByChance(MeasurementEffect):
         """See `Effect.in_words_at`: stamps that are cut to a coarse step are early."""
         if values[1] < -EARLY_S:
             return "poses whose stamps are early, some by more than others (cut to a coarse step)"
-        return (
-            self.in_words
-            if values[1] < EARLY_S
-            else self.in_words.replace("some", "all late, some")
-        )
+        late = "all late, some" if values[1] > EARLY_S else "some"
+        return self.in_words.replace("some", late)
 
     def is_meant(self, values: FloatArray) -> bool:
         """See `Effect.is_meant`: uneven stamps are late, not measured so; not half of both."""

@@ -9,7 +9,8 @@ from odometry.effects.reference_outliers import JumpingPoses
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.jumps import jumps
 from odometry.gap.prepare.outliers import closes, outliers_of
-from odometry.gap.prepare.scenes import cleaned_runs
+from odometry.gap.prepare.scenes import cleaned_runs, without_outliers
+from odometry.gap.prepare.statistic import squared_errors
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()
@@ -47,6 +48,20 @@ def test_windows_end_before_a_jump_and_begin_after_it(jumping, plain, known):
     first, last = cut.windows[:, 0], cut.windows[:, -1]
     assert not ((first[:, None] < AT) & (last[:, None] >= AT)).any()
     assert closes([jumping], [cut], known.base, CONFIG)
+
+
+def test_jumps_are_left_out_where_a_single_one_is_held_out(jumping, plain, known):
+    """Each is one by itself: that a model errs there is no chance of the stretch."""
+    scene = jumping.numbered(0)
+    numbers = [np.array([int(jumping.pose_s[AT[0]] // CONFIG.part_s)])]
+    fitted, held, found = without_outliers(
+        ([jumping.run], []), ([scene], []), numbers, ([plain], known), CONFIG
+    )
+    assert isinstance(found.named.effect, JumpingPoses)
+    limit_m2 = 1.0
+    for cut in (*fitted, *held):
+        assert np.max(squared_errors(known.base, (), cut)) < limit_m2
+    assert np.max(squared_errors(known.base, (), scene)) > limit_m2
 
 
 def test_a_chain_that_there_was_stays_cut(jumping, plain, known):
