@@ -222,6 +222,18 @@ NOT_CURVES = frozenset(
 )
 
 
+OF_TURNS = frozenset(
+    {"pose_late", "clocks_apart", "clock_set", "poses_unrelated", "poses_are_wheel_odometry"}
+    | {"pose_mirrored", "interpolated_poses", "repeated_poses", "frozen_poses", "turns_at_rest"}
+    | {"uneven_stamps", "sensors_disagree"}
+)
+
+
+def _is_of_turns(name: str) -> bool:
+    """Whether a finding is of measured turns: of the gyroscope, yaw or their stamps."""
+    return name.startswith(("gyroscope_", "yaw_")) or name in OF_TURNS
+
+
 def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
@@ -229,6 +241,7 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     if names & NOT_CURVES:
         implied.add("treads_not_proportional")
     if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
-        # one is for what has no name, the other for what is wrong by a little
-        implied |= {"sensors_disagree", "gyroscope_scale"}
+        implied.add("sensors_disagree")  # it is for what has no name
+    if any(f.level is not Level.NOTE and _is_of_turns(f.name) for f in findings):
+        implied.add("gyroscope_scale")  # what is wrong by a little may be a part of it
     return [finding for finding in findings if finding.name not in implied]

@@ -1,14 +1,13 @@
 """Sensors of the same motion, and headings, that differ where no known cause explains it."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from odometry.checks.carried import carried_along
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.heading import Heading, across_m, along_m, headings
+from odometry.checks.heading import Heading, across_m, along_m, far_and_straight, headings
 from odometry.checks.heading_spans import heading_spans
 from odometry.checks.motion import Motion
 from odometry.checks.position_differences import (
@@ -210,11 +209,10 @@ def yaw_wanders(evidence: Evidence) -> str:
         piece = m.rows(rows)
         heading = headings(piece, evidence.turn_rad(piece)).get("radians")
         if heading is not None and heading.concentration > PIECE_HELD:
-            found.append((heading.offset_rad, _skid(evidence, piece, heading).tightness))
+            found.append((heading.offset_rad, _tightness(evidence, piece, heading)))
     if len(found) < max(count, PIECES) / 2:
         return ""
-    whole = headings(m, evidence.turn_rad(m)).get("radians")
-    arm_m = 0.0 if whole is None else _skid(evidence, m, whole).arm_m
+    arm_m = _arm_m(evidence)
     offsets = np.array([offset - arm_m * tightness for offset, tightness in found])
     middle = np.angle(np.exp(2j * offsets).sum()) / 2
     away = np.angle(np.exp(2j * (offsets - middle))) / 2
@@ -226,19 +224,22 @@ def yaw_wanders(evidence: Evidence) -> str:
     )
 
 
-class _Skid(NamedTuple):
-    """How tight turns are in the mean [rad/m], and the arm [m] of motion aside in them."""
+def _tightness(evidence: Evidence, piece: Motion, heading: Heading) -> float:
+    """How much a piece turns for its way [rad/m], in the windows that its offset is taken from."""
+    turn = evidence.turn_rad(piece)
+    used = far_and_straight(piece, turn)
+    return 0.0 if used is None else float(np.nanmean((turn / along_m(piece, heading))[used]))
 
-    tightness: float
-    arm_m: float
 
-
-def _skid(evidence: Evidence, motion: Motion, heading: Heading) -> _Skid:
-    """Of windows with a course: sideways motion is an offset of yaw, and an arm times turns."""
-    turn = evidence.turn_rad(motion)
-    across, along = across_m(motion, heading), along_m(motion, heading)
+def _arm_m(evidence: Evidence) -> float:
+    """Motion aside for each turn, beside what an offset of yaw explains of both."""
+    m = evidence.motion
+    turn = evidence.turn_rad(m)
+    heading = headings(m, turn).get("radians")
+    if heading is None:
+        return 0.0
+    across, along = across_m(m, heading), along_m(m, heading)
     known = np.isfinite(across) & np.isfinite(turn) & (np.abs(turn) < MOST_TURN_RAD)
     across, along, turn = across[known], along[known], turn[known]
-    tightness = float(along @ turn) / max(float(along @ along), 1e-12)
-    beside = turn - tightness * along
-    return _Skid(tightness, float(beside @ across) / max(float(beside @ beside), 1e-12))
+    beside = turn - along * float(along @ turn) / max(float(along @ along), 1e-12)
+    return float(beside @ across) / max(float(beside @ beside), 1e-12)

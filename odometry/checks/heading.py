@@ -65,7 +65,7 @@ def headings(motion: Motion, turn_rad: FloatArray) -> dict[str, Heading]:
     turn_rad : (K,)
         By how much the robot turns, by gyroscope or yaw.
     """
-    far = _far_and_straight(motion, turn_rad)
+    far = far_and_straight(motion, turn_rad)
     if far is None:
         return {}
     course, ahead = motion.course_rad[far], motion.mean_m[far]
@@ -95,7 +95,8 @@ def turns_in_radians(motion: Motion, turn_rad: FloatArray, track_width_m: float)
     return found is not None and found.correlation > HELD and low < found.slope < high
 
 
-def _far_and_straight(motion: Motion, turn_rad: FloatArray) -> BoolArray | None:
+def far_and_straight(motion: Motion, turn_rad: FloatArray) -> BoolArray | None:
+    """Windows (K,) whose course is known, the straightest that suffice; None where too few are."""
     distance = motion.distance_m
     known = np.isfinite(distance) & np.isfinite(motion.yaw_rad).all(axis=1)
     if known.sum() < LEAST_WINDOWS:

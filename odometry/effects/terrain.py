@@ -1,7 +1,7 @@
 """Terrains on which tread ICRs and slip differ."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -30,9 +30,12 @@ class Terrain(MotionEffect):
     ----------
     labels : tuple of str
         Terrains unlike the one that the base was identified on.
+    apart_m : float, optional
+        How far the tread ICRs of the base are apart, where that is known.
     """
 
     labels: tuple[str, ...] = ()
+    apart_m: float | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.labels, tuple) or not all(isinstance(n, str) for n in self.labels):
@@ -57,7 +60,13 @@ class Terrain(MotionEffect):
         changed = [label for label in recorded.labels if label in recorded.calibrated]
         if changed and recorded.is_on_one_terrain:
             return ()
-        return (*([cls(new)] if new else []), *(cls((label,)) for label in changed))
+        apart_m = icrs_apart_m(recorded.base)
+        news = [cls(new, apart_m)] if new else []
+        return (*news, *(cls((label,), apart_m) for label in changed))
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: on no terrain a robot turns against its treads."""
+        return all(turns_with_treads(s, self.apart_m) for s in values.reshape(-1, len(SHIFTED)))
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -122,14 +131,11 @@ class NewIcrs(MotionEffect):
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
         """Beside the ICRs of the base."""
-        if recorded.base.model.name != "icr":
-            return (cls(),)
-        left, right, _ = tread_icrs(recorded.base, cls.name)
-        return (cls(float(left - right)),)
+        return (cls(icrs_apart_m(recorded.base)),)
 
     def is_meant(self, values: FloatArray) -> bool:
         """See `Effect.is_meant`: on no terrain a robot turns against its treads."""
-        return self.apart_m is None or bool(self.apart_m + values[0] - values[1] > 0)
+        return turns_with_treads(values, self.apart_m)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
@@ -148,6 +154,19 @@ class NewIcrs(MotionEffect):
         """See `MotionEffect.twist`: the difference that the shifts make to the base."""
         icrs, alphas = tread_icrs(base, self.name), slip_factors(base)
         return np.asarray(twist + shifted_by(values, icrs, alphas, inputs.tread_speeds_m_s))
+
+
+def icrs_apart_m(base: Base) -> float | None:
+    """How far the tread ICRs of a base are apart; None where it has none."""
+    if base.model.name != "icr":
+        return None
+    left, right, _ = tread_icrs(base, Terrain.name)
+    return float(left - right)
+
+
+def turns_with_treads(shift: FloatArray, apart_m: float | None) -> bool:
+    """Whether the left ICR stays to the left of the right one."""
+    return apart_m is None or bool(apart_m + shift[0] - shift[1] > 0)
 
 
 def shifted_by(

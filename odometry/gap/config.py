@@ -78,9 +78,9 @@ class GapConfig:
         known to a quarter of a second, and what begins at a moment, more: on development seeds
         right ones close 0.96, wrong ones 0.88 at most.
     above_floor : float
-        In how many times its uncertainty of 95 % the gap on held-out data must be above the noise
-        floor before anything is added. Of real recordings changed by hand, in windows where it was
-        not, 4 of 7 names were wrong.
+        In how many times its uncertainty of 95 % the gap must be above the noise floor before
+        anything is added, on held-out or on measured data (`Shown`). Of real recordings changed by
+        hand, in windows where the held-out one was not, 4 of 7 names were wrong.
     turns_above, turns_times, hardly : float
         The same of headings and of the gyroscope, by which a gap is judged where positions are not
         above their floor, or by less than `hardly` times; and in how many times their floor these

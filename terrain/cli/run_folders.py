@@ -32,25 +32,41 @@ class RunsFirst(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Click's own, or its error; a run that is the only one of the verb may stand anywhere."""
-        options = {o: p for p in self.params if isinstance(p, click.Option) for o in p.opts}
-        after: dict[str, list[str]] = {}
-        option, words = "", iter(args)
+        if not ctx.resilient_parsing:
+            self._refuse_doubtful(ctx, args)
+        return super().parse_args(ctx, args)
+
+    def _refuse_doubtful(self, ctx: click.Context, args: list[str]) -> None:
+        """Click's error where one of several runs follows that of an option.
+
+        Nothing where help is asked for, or an option that there is not: click says so.
+        """
+        params = [p for p in self.get_params(ctx) if isinstance(p, click.Option)]
+        options = {name: p for p in params for name in (*p.opts, *p.secondary_opts)}
+        option: click.Option | None = None
+        runs: list[str] = []
+        following: dict[str, list[str]] = {}
+        words = iter(args)
         for word in words:
             name = word.partition("=")[0]
-            if name not in options:
-                after.setdefault(option, []).append(word)
-                continue
-            option = name
-            if "=" not in word and not options[name].is_flag:
-                next(words, None)
-        if sum(map(len, after.values())) > 1:
-            for option, runs in after.items():
-                if option and isinstance(options[option].type, RunFolder):
-                    ctx.fail(
-                        f"{' '.join(runs)} after a run of {option}: write {option} before "
-                        f"each of its runs, and {self._runs()} before all options"
-                    )
-        return super().parse_args(ctx, args)
+            if word == "--":
+                runs += words
+            elif name in ctx.help_option_names or (word[:1] == "-" and name not in options):
+                return
+            elif name in options:
+                option = options[name]
+                if "=" not in word and not option.is_flag:
+                    next(words, None)
+            else:
+                runs.append(word)
+                if option is not None and isinstance(option.type, RunFolder):
+                    following.setdefault(option.opts[0], []).append(word)
+        for name, own in following.items():
+            if len(runs) > 1:
+                ctx.fail(
+                    f"{' '.join(own)} after a run of {name}: write {name} before each of its runs, "
+                    f"and {self._runs()} before all options"
+                )
 
     def _runs(self) -> str:
         """What the usage calls the runs that belong to no option."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 from odometry.effects.base import Effect
 from odometry.effects.residual import Residual
@@ -210,11 +211,13 @@ class Standing(Search):
     def _at_first(self, held_out: Sequence[DenseWindows]) -> Shown:
         """The gaps of the base as it was calibrated, on held-out and on measured windows."""
         base, measure = self.fitter.calibration.base, self.floor.measure
-        held, measured = (
-            gap_of(base, (), of, self.config.part_s, measure)
-            for of in (held_out, self.fitter.measured.scenes)
-        )
-        return Shown((held, self.held_floor), (measured, self.floor))
+        held = gap_of(base, (), held_out, self.config.part_s, measure)
+        return Shown((held, self.held_floor), (self._measured_at_first, self.floor))
+
+    @cached_property
+    def _measured_at_first(self) -> Gap:
+        base, scenes = self.fitter.calibration.base, self.fitter.measured.scenes
+        return gap_of(base, (), scenes, self.config.part_s, self.floor.measure)
 
 
 def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:

@@ -150,7 +150,7 @@ class Search:
 
     @cached_property
     def is_above(self) -> bool:
-        """Whether the gap on held-out data is surely above its noise floor."""
+        """Whether the interval of the gap on held-out data lies above that of its noise floor."""
         base, part_s = self.fitter.calibration.base, self.config.part_s
         gap = gap_of(base, (), self.held_out, part_s, self.floor.measure)
         return gap.low > self.held_floor.high

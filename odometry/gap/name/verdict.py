@@ -42,7 +42,7 @@ class Refusal:
 
 
 def within_noise(before: Shown, config: GapConfig) -> str:
-    """Whether the gap on held-out data before anything is added is surely above the noise floor."""
+    """Whether the gap before anything is added is surely above the noise floor, see `Shown`."""
     if before.is_sure(config.above_floor):
         return ""
     held_out, floor = before.held_out
@@ -73,7 +73,7 @@ def closes_held_out(
 ) -> str:
     """Whether the gap on held-out data is less after than before, surely; by the floor's measure.
 
-    It must not be greater, nor that of positions surely, and the paired interval
+    It must not be greater, nor that of positions (see `_farther`), and the paired interval
     of 95 % of the difference must lie above zero: that of the gap, that of the mean error, which a
     few windows in which a model fails do not decide, or the sum without the pieces that gain most.
     Or several pieces that are far above the floor are all brought within it.
@@ -123,8 +123,9 @@ def _farther(
     squares = _squares(before, after, held_out, Measure.POSITION)
     was, now = (float(np.sqrt(of.mean())) for of in squares)
     drawn = drawn_gaps(squares, held_out, config.part_s, np.random.default_rng(SEED))
-    surely = np.quantile(drawn[1] - drawn[0], 0.025) > 0 and now > was * (1 + config.no_farther)
-    if surely or now > was * (1 + config.much_farther):
+    several = len(np.unique(numbered_pieces(held_out, config.part_s))) > 1
+    surely = several and np.quantile(drawn[1] - drawn[0], 0.025) > 0
+    if (surely and now > was * (1 + config.no_farther)) or now > was * (1 + config.much_farther):
         return _worse(was, now, Measure.POSITION)
     return ""
 

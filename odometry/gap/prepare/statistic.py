@@ -86,13 +86,15 @@ class Gap:
         From both intervals to the lower bound of a difference of two values that have intervals of
         their own (Zou and Donner 2008, Statistics in Medicine 27, 1693). That of a gap is wide
         where an effect acts in few stretches, though noise alone, in as many of them, would not
-        reach it: so it is no more than some times what the floor scatters there.
+        reach it: so it is no more than some times what the floor scatters there, where that is
+        known from many.
         """
-        by_both = float(np.hypot(self.value - self.low, floor.high - floor.value))
-        if not floor.has_interval:
+        of_floor = floor.high - floor.value
+        by_both = float(np.hypot(self.value - self.low, of_floor))
+        if floor.pieces < MANY or of_floor <= 0:
             return by_both
-        as_many = float(np.sqrt(floor.pieces / self.pieces)) * (floor.high - floor.value)
-        return min(by_both, BY_NOISE * as_many)
+        as_many = float(np.sqrt(floor.pieces / self.pieces)) * of_floor
+        return min(by_both, float(np.hypot(BY_NOISE * as_many, of_floor)))
 
     def is_surely_above(self, floor: "Gap", times: float) -> bool:
         """Whether it is above the floor by so many times what the difference is known to."""

@@ -82,7 +82,7 @@ def is_not_held_out(result: GapResult) -> bool:
 
 
 def is_doubtful(result: GapResult) -> bool:
-    """Whether "none" is said of measured runs that noise does not explain."""
+    """Whether noise does not explain the measured runs, as they were: no "none" is sure then."""
     measured, _ = result.closings
     return measured.before.is_above(measured.noise_floor)
 

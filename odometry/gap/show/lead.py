@@ -8,6 +8,7 @@ from odometry.effects.residual import Residual
 from odometry.gap.answer.result import Equivalent, GapResult, NamedEffect
 from odometry.gap.locate.region_words import noun_of_residual
 from odometry.gap.name.verdict import Refusal
+from odometry.gap.prepare.statistic import MANY
 from odometry.gap.show.advice import (
     faults_of_sensors,
     is_doubtful,
@@ -169,10 +170,11 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
     said = f"{what} falls {change}; {floor}"
     if share is None and is_doubtful(result):
         fitted = result.closings[0]
+        few = " on so few stretches" if held.before.pieces < MANY else ""
         said += (
-            ", too near for a share on so few stretches; the measured runs had "
-            f"{of_two_figures(fitted.before)}, have {of_two_figures(fitted.after)}, and their "
-            f"noise floor is {of_two_figures(fitted.noise_floor)}"
+            f", too near for a share{few}; the measured runs had {of_two_figures(fitted.before)}, "
+            f"have {of_two_figures(fitted.after)}, and their noise floor is "
+            f"{of_two_figures(fitted.noise_floor)}"
         )
     elif share is None:
         said += ", which the gap before hardly exceeds"
@@ -181,7 +183,8 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
         said += f", so that {percent(share)} of the excess is closed{below}"
     if held.after.is_above(held.noise_floor):
         left = held.after.value - held.noise_floor.value
-        said += f" and {left:.2g} {held.after.measure.unit} stays unexplained"
+        said += f"{' and' if share else '; held out,'} {left:.2g} {held.after.measure.unit} stays "
+        said += "unexplained"
     return f"{said}."
 
 

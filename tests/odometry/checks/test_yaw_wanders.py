@@ -30,6 +30,15 @@ def test_a_robot_that_skids_in_tight_turns_has_the_same_yaw_in_each_piece():
     assert yaw_wanders(Evidence(skidding(turning_by_pieces(), 0.25))) == ""
 
 
+def test_a_robot_that_skids_and_drives_straight_has_it_as_well():
+    """Offsets are those of the straight half of each piece, which do not skid."""
+    at_s = PERIOD_S * np.arange(3200)
+    turns = np.where(at_s % 20 < 10, 0.0, 0.8 * np.sign(np.sin(np.pi * at_s / 20 + 1e-6)))
+    run = drive(np.full(3200, 0.3), turns)
+    assert yaw_wanders(Evidence(skidding(run, 0.25))) == ""
+    assert yaw_wanders(Evidence(skidding(run, 0.4))) == ""
+
+
 def test_a_yaw_that_drifts_to_and_fro_wanders():
     for run in (winding(), skidding(turning_by_pieces(), 0.25)):
         slow = 0.4 * np.sin(run.pose["t"] / 15)

@@ -110,7 +110,10 @@ def test_beside_icrs_by_terrain_each_effect_sees_those_of_the_sample(bench, rng)
 def test_no_terrain_turns_a_robot_against_its_treads():
     """Columns that are exchanged have a set of ICRs that does: left ones on the right."""
     swapped, narrow = np.array([-1.0, 1.0, 0, 0, 0]), np.array([-0.4, 0.4, 0, 0, 0])
-    effect = NewIcrs(0.9)
-    assert effect.is_meant(narrow)
-    assert not effect.is_meant(swapped)
+    for effect in (NewIcrs(0.9), Terrain(("sand",), 0.9)):
+        assert effect.is_meant(narrow)
+        assert not effect.is_meant(swapped)
+    two = Terrain(("ice", "sand"), 0.9)
+    assert two.is_meant(np.append(narrow, narrow))
+    assert not two.is_meant(np.append(narrow, swapped))
     assert NewIcrs().is_meant(swapped)

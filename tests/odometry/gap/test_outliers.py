@@ -9,7 +9,7 @@ import pytest
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.frozen import frozen_steps, isolated
 from odometry.gap.prepare.outliers import closes, outliers_of
-from odometry.gap.prepare.scenes import cleaned_runs
+from odometry.gap.prepare.scenes import cleaned_runs, without_outliers
 from odometry.windows.dense import dense_windows_of
 
 CONFIG = GapConfig()
@@ -130,6 +130,24 @@ def test_poses_that_repeat_the_last_one_are_found(plain, known, rng, noise_m):
     frozen_s = run.pose.stamps_s[held < np.arange(len(held))] - run.odometry.stamps_s[0]
     assert set(found.named.effect.stamps_s[0]) <= set(frozen_s)
     assert len(found.named.effect.stamps_s[0]) > 0.7 * len(frozen_s)
+
+
+def test_a_stretch_held_out_of_which_nothing_is_left_keeps_its_poses(plain, known):
+    """The reference hangs all through the only stretch that is held out, and before and after."""
+    pose_s = plain.pose_s
+    hangs = (pose_s > 29.0) & (pose_s < 41.0)
+    held = np.where(hangs, np.argmax(hangs), np.arange(len(pose_s)))
+    run = plain.run
+    columns = {name: of if name == "t" else of[held] for name, of in run.pose.columns.items()}
+    stuck = replace(run, pose=replace(run.pose, columns=columns))
+    scene = dense_windows_of(stuck, CONFIG.horizon_s).numbered(0)
+    numbers = [np.array([3])]
+    assert outliers_of([scene], [], [plain], known, CONFIG) is not None
+    fitted, kept, found = without_outliers(
+        ([stuck], []), ([scene], []), numbers, ([plain], known), CONFIG
+    )
+    assert found is None
+    assert len(fitted) == len(kept) == 1
 
 
 def test_of_all_ways_to_freeze_and_jump_the_least_cost_is_found(rng):

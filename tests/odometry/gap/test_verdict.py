@@ -217,6 +217,18 @@ def test_a_gap_that_noise_alone_does_not_reach_is_sure_though_its_stretches_diff
     assert gap.is_surely_above(floor, 1.0) == sure
 
 
+@pytest.mark.parametrize(
+    ("gap", "floor"),
+    [
+        ((1.05e-3, 7e-4, 1.4e-3, 4), (1e-3, 1e-3, 1e-3, 20)),  # the least floor that there is
+        ((0.032, 0.02, 0.045, 4), (0.03, 0.0299, 0.0301, 2)),  # two stretches that happen to agree
+        ((0.034, 0.02, 0.05, 300), (0.03, 0.025, 0.035, 20)),  # less than the floor is known to
+    ],
+)
+def test_noise_decides_by_itself_only_where_it_is_known(gap, floor):
+    assert not Gap(*gap).is_surely_above(Gap(*floor), 1.0)
+
+
 @pytest.mark.parametrize(("share", "stands"), [(0.05, False), (0.22, True), (1.0, True)])
 def test_a_name_closes_more_than_a_small_part(share, stands):
     assert (closes_a_part(share, CONFIG) == "") == stands

@@ -57,5 +57,29 @@ def test_a_run_that_may_be_of_either_is_an_error(given, line, after):
     )
 
 
+@pytest.mark.parametrize("line", ["a --known b --", "--known b -- a", "a --known=b --"])
+def test_what_stands_after_two_dashes_belongs_to_no_option(given, line):
+    assert given(line).output == "[['a'], ['b']]\n"
+
+
+def test_two_runs_after_two_dashes_are_no_error(given):
+    assert given("--known c -- a b").output == "[['a', 'b'], ['c']]\n"
+
+
+def test_help_is_given_and_a_wrong_option_named_whatever_else_is_wrong(given):
+    answer = given("a --known b c --help")
+    assert answer.exit_code == 0
+    assert "Usage:" in answer.output
+    wrong = given("a --known b --knwn c").output
+    assert "No such option" in wrong
+    assert "--knwn" in wrong
+
+
+def test_completion_asks_for_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = RunsFirst("verb", params=[click.Option(["--known"], type=RunFolder(), multiple=True)])
+    assert command.make_context("verb", ["--known", "b", "c", "d"], resilient_parsing=True)
+
+
 def test_options_that_take_no_runs_are_as_ever(given):
     assert given("--fast a --out d b --known c").output == "[['a', 'b'], ['c']]\n"
