@@ -65,6 +65,9 @@ class GapConfig:
         the name must close to be its main part. True wheel scales closed 0.93 and more.
     largest_growth : float
         Share by which a wheel may seem larger from a moment on: twice what is left of a true one.
+    one_sided : float
+        Share of the change of the one side's wheels that the other side's may have from a moment
+        on: lost tyres have 0.05 at most, a battery that sags 0.95.
     no_farther, much_farther : float
         Shares by which positions may be farther off where headings or the gyroscope are judged:
         the first where they surely are, the second at all. True names moved positions that were
@@ -176,6 +179,7 @@ class GapConfig:
     least_better: float = 0.005
     least_beside: float = 0.5
     main_part: float = 0.9
+    one_sided: float = 0.5
     no_farther: float = 0.02
     much_farther: float = 0.1
     largest_growth: float = 0.02
@@ -249,7 +253,7 @@ class GapConfig:
             ),
             "least_better",
             "least_beside",
-            *("main_part", "no_farther", "much_farther", "largest_growth"),
+            *("main_part", "one_sided", "no_farther", "much_farther", "largest_growth"),
             "beyond_first_order",
             *("base_probability", "least_odds", "sure_odds"),
         ):

@@ -141,6 +141,17 @@ def is_even(of: Unevenness, config: GapConfig) -> str:
     )
 
 
+def is_of_one_side(factors: FloatArray, config: GapConfig) -> str:
+    """Whether the wheels of one side have another size from a moment on, and not all alike."""
+    less, more = np.sort(np.abs(np.asarray(factors) - 1))
+    if less <= config.one_sided * more:
+        return ""
+    return (
+        f"all its wheels change from a moment on ({factors[0]:.3g} and {factors[1]:.3g} times as "
+        "large): what is lost is no tyre and no track"
+    )
+
+
 def no_wheel_grows(factors: FloatArray, config: GapConfig) -> str:
     """Whether no wheel is larger from a moment on: a tyre is lost, none grows."""
     if float(np.max(factors)) <= 1 + config.largest_growth:

@@ -8,7 +8,7 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.form_gates import no_wheel_grows
+from odometry.gap.name.form_gates import is_of_one_side, no_wheel_grows
 from odometry.gap.name.search import Search
 from odometry.gap.name.verdict import leaves_noise
 
@@ -35,6 +35,7 @@ def sudden_wheels(search: Search, found: Explanation) -> Explanation:
     reason = leaves_noise(spread, closed, search.config.left_over, search.config.bursts_closed)
     values = best.fitted.effects[-1].values[: len(WheelScale().parameters)]
     reason = reason or no_wheel_grows(values, search.config)
+    reason = reason or is_of_one_side(values, search.config)
     if reason:
         search.refuse(wheels, reason)
         return nothing

@@ -16,6 +16,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit.effect_values import essence_spans_none
 from odometry.gap.name.form_gates import (
     is_most_of,
+    is_of_one_side,
     is_of_stamps,
     is_resolved,
     is_sure_of_its_essence,
@@ -54,6 +55,15 @@ def test_the_interval_of_what_makes_a_name_spans_none(sigma, spans):
         covariance=np.diag([1.0, 0.1, sigma, 2.0]) ** 2,
     )
     assert essence_spans_none(fit, 1) == spans
+
+
+@pytest.mark.parametrize(
+    ("factors", "stands"), [((0.94, 1.0), True), ((1.005, 0.95), True), ((0.986, 0.987), False)]
+)
+def test_a_tyre_is_lost_on_one_side(factors, stands):
+    reason = is_of_one_side(np.array(factors), CONFIG)
+    assert (reason == "") == stands
+    assert stands or "0.986 and 0.987 times as large" in reason
 
 
 @pytest.mark.parametrize(("closed", "stands"), [(91.0, True), (89.0, False)])
