@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.checks.carried import carried_along
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
@@ -139,9 +140,8 @@ MOST_TURN_RAD = 1.0  # within a window that has a course
 def scales_apart(evidence: Evidence) -> str:
     """Turns of gyroscope and poses that have a constant ratio other than one."""
     fit = _turn_ratio(evidence, SCALE, CORRELATED)
-    return (
-        "" if fit is None else f"{_ratio_words(fit)} (a scale of either, or an axis that is tilted)"
-    )
+    tilted = " (a scale of either, or an axis that is tilted)"
+    return "" if fit is None else _ratio_words(fit) + tilted
 
 
 def gyroscope_scale(evidence: Evidence) -> Iterator[Finding]:
@@ -228,7 +228,8 @@ def _tightness(evidence: Evidence, piece: Motion, heading: Heading) -> float:
     """How much a piece turns for its way [rad/m], in the windows that its offset is taken from."""
     turn = evidence.turn_rad(piece)
     used = far_and_straight(piece, turn)
-    return 0.0 if used is None else float(np.nanmean((turn / along_m(piece, heading))[used]))
+    known = np.isfinite(turn) & (False if used is None else used)
+    return _proportion(turn[known], along_m(piece, heading)[known])
 
 
 def _arm_m(evidence: Evidence) -> float:
@@ -241,5 +242,9 @@ def _arm_m(evidence: Evidence) -> float:
     across, along = across_m(m, heading), along_m(m, heading)
     known = np.isfinite(across) & np.isfinite(turn) & (np.abs(turn) < MOST_TURN_RAD)
     across, along, turn = across[known], along[known], turn[known]
-    beside = turn - along * float(along @ turn) / max(float(along @ along), 1e-12)
-    return float(beside @ across) / max(float(beside @ beside), 1e-12)
+    return _proportion(across, turn - _proportion(turn, along) * along)
+
+
+def _proportion(values: FloatArray, of: FloatArray) -> float:
+    """Least squares; 0 of nothing."""
+    return float(of @ values) / max(float(of @ of), 1e-12)

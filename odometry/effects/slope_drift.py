@@ -1,4 +1,4 @@
-"""Drifting downhill while the treads turn, on straight lines as well."""
+"""Drifting downhill while driving, on straight lines as well as in turns."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from odometry.models.inputs import Inputs
 
 
 class SlopeDrift(MotionEffect):
-    """Treads that turn creep downhill by a share of their speed, as soil gives way under them.
+    """A robot that drives drifts downhill by a share of its treads' speed, as soil gives way.
 
     Along the robot (less way uphill, more downhill) and across it (crabbing on a side slope), each
     by the sine of the slope in that direction. The other forms slide in turns alone.
@@ -18,7 +18,7 @@ class SlopeDrift(MotionEffect):
 
     name = "slope_sliding"
     form = "drift"
-    in_words = "drifting downhill while the treads turn"
+    in_words = "drifting downhill while driving"
     answers_to = ""
     equation = (
         "v_x -> v_x + along |v| sin(pitch), v_y -> v_y - across |v| cos(pitch) sin(roll), "

@@ -26,7 +26,7 @@ from odometry.gap.locate.locate import locate
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
-from odometry.gap.prepare.held_out import apart, held_out_pieces
+from odometry.gap.prepare.held_out import held_out_pieces
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.rounding import rounding_notes
@@ -114,8 +114,7 @@ def find_gap(
         calibrated(known_scenes, model or Icr(), robot, config, given), known_scenes, config
     )
     numbers = None if holdout else held_out_pieces(whole, config)
-    raw_scenes = apart((whole, held), numbers, config)
-    fitted_scenes, held_scenes, outliers = without_outliers(
+    raw_scenes, (fitted_scenes, held_scenes), outliers = without_outliers(
         (measured, holdout), (whole, held), numbers, (known_scenes, known), config
     )
     floor = floor_of(known.held_back, config.part_s)

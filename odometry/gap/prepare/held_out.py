@@ -10,15 +10,16 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.pieces import pieces
 from odometry.windows.dense import DenseWindows, thinned
 
+Apart = tuple[list[DenseWindows], list[DenseWindows]]  # to fit to, and to evaluate on
 STANDING_M_S = 0.05  # mean tread speed of a piece below which it shows no effect
 
 
 def held_out_pieces(scenes: Sequence[DenseWindows], config: GapConfig) -> list[IntArray]:
     """Numbers of the pieces of each run that are held out: every so many of those that move.
 
-    In the order of time, whatever their error: dealt out by it, the worst stretch of a recording of
-    few would always be one that is fitted to. Stationary pieces agree with any model: an evaluation
-    on them means nothing.
+    By their order in time, not by their error: of a short recording, the worst piece would then
+    always be one that is fitted to. Stationary pieces agree with any model: an evaluation on them
+    means nothing.
 
     Raises
     ------
@@ -39,7 +40,7 @@ def apart(
     groups: tuple[Sequence[DenseWindows], Sequence[DenseWindows]],
     numbers: Sequence[IntArray] | None,
     config: GapConfig,
-) -> tuple[list[DenseWindows], list[DenseWindows]]:
+) -> Apart:
     """Scenes to fit and scenes to evaluate.
 
     Of those measured, pieces of these numbers are held out; None where whole runs are.

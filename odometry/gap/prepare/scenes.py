@@ -10,7 +10,7 @@ from odometry.effects.reference_outliers import JumpingPoses
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.frozen import Isolated
-from odometry.gap.prepare.held_out import apart
+from odometry.gap.prepare.held_out import Apart, apart
 from odometry.gap.prepare.jumps import Jumps
 from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
 from odometry.gap.prepare.rounding import rounded_m
@@ -60,27 +60,28 @@ def without_outliers(
     numbers: Sequence[IntArray] | None,
     calibration: tuple[Sequence[DenseWindows], Calibration],
     config: GapConfig,
-) -> tuple[list[DenseWindows], list[DenseWindows], Outliers | None]:
-    """Scenes to fit and to evaluate without poses that are far off, where that closes some gap.
+) -> tuple[Apart, Apart, Outliers | None]:
+    """Scenes to fit and to evaluate with all poses, and without those that are far off.
 
-    On held-out data. Of jumps on all: each is off by itself, and few are in what is held out, so
-    that this asks for several pieces with one. None where nothing is left of what is held out.
+    Both are the same, and there are no outliers, where that closes no gap on held-out data (of
+    jumps on all, as each is off by itself and few are in what is held out), or where nothing is
+    left of what is held out.
     """
     known_scenes, known = calibration
     scenes = apart(groups, numbers, config)
     outliers = outliers_of(*groups, known_scenes, known, config)
     if outliers is None:
-        return *scenes, None
+        return scenes, scenes, None
     _, *cut = alike(known_scenes, *scenes_of(*cleaned_runs(*runs, outliers), config))
     left = apart((cut[0], cut[1]), numbers, config)
     if [len(of) for of in left] != [len(of) for of in scenes]:
-        return *scenes, None
+        return scenes, scenes, None
     judged = scenes[1], left[1]
     if isinstance(outliers.named.effect, JumpingPoses):
         judged = [*groups[0], *groups[1]], [*cut[0], *cut[1]]
     if not closes(*judged, known.base, config):
-        return *scenes, None
-    return *left, outliers
+        return scenes, scenes, None
+    return scenes, left, outliers
 
 
 def cleaned_runs(

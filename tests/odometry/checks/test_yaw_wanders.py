@@ -39,6 +39,14 @@ def test_a_robot_that_skids_and_drives_straight_has_it_as_well():
     assert yaw_wanders(Evidence(skidding(run, 0.4))) == ""
 
 
+def test_a_robot_that_stands_and_spins_in_exact_data_divides_by_nothing():
+    at_s = PERIOD_S * np.arange(3200)
+    stops = at_s % 20 < 5
+    run = drive(np.where(stops, 0.0, 0.5), np.where(at_s % 20 < 3, 0.6, 0.0), sigma_m=0.0)
+    with np.errstate(divide="raise"):
+        assert yaw_wanders(Evidence(run)) == ""
+
+
 def test_a_yaw_that_drifts_to_and_fro_wanders():
     for run in (winding(), skidding(turning_by_pieces(), 0.25)):
         slow = 0.4 * np.sin(run.pose["t"] / 15)

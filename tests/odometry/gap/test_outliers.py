@@ -143,10 +143,11 @@ def test_a_stretch_held_out_of_which_nothing_is_left_keeps_its_poses(plain, know
     scene = dense_windows_of(stuck, CONFIG.horizon_s).numbered(0)
     numbers = [np.array([3])]
     assert outliers_of([scene], [], [plain], known, CONFIG) is not None
-    fitted, kept, found = without_outliers(
+    raw, (fitted, kept), found = without_outliers(
         ([stuck], []), ([scene], []), numbers, ([plain], known), CONFIG
     )
     assert found is None
+    assert raw == (fitted, kept)
     assert len(fitted) == len(kept) == 1
 
 
