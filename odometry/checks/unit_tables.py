@@ -89,7 +89,8 @@ def _in(unit: Unit) -> Unit:
 def counts(forward: float, radius_known: bool) -> Unit:
     """What speeds are that are far too large for m/s: of wheels, motors or encoders."""
     units = () if radius_known else of_wheels(forward)
-    return Unit(", ".join([*units, "encoder ticks or motor RPM (before the gearbox)"]), 1 / forward)
+    words = [*units, "encoder ticks, motor RPM (before the gearbox) or another unit"]
+    return Unit(", ".join(words), 1 / forward)
 
 
 def of_wheels(forward: float) -> tuple[str, ...]:
