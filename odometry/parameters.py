@@ -13,7 +13,7 @@ from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
 from odometry.io.structured import read_toml
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
-from odometry.outputs.manifest import check_first_line, format_line
+from odometry.outputs.manifest import check_first_line, format_line, made_text
 from odometry.parameter_covariance import covariance_of_table, finite_number
 from odometry.run import UNKNOWN
 
@@ -141,7 +141,7 @@ def write_parameters(file: str | Path, parameters: ParameterSet, comment: str = 
     content["terrain"] = {name: _table(of) for name, of in parameters.terrains.items()}
     with atomic_write(Path(file)) as part:
         head = format_line("parameter set", FORMAT) + comment
-        part.write_text(head + tomli_w.dumps(content), encoding="utf-8")
+        part.write_text(made_text(head, tomli_w.dumps(content)), encoding="utf-8")
 
 
 def _terrain(table: Any, name: str, where: str) -> TerrainParameters:

@@ -7,6 +7,7 @@ from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.table import fill_gaps, level_where_missing
+from odometry.windows.measured_poses import measured_poses, positions_at
 from odometry.windows.turns import continuous_yaw
 
 
@@ -24,11 +25,13 @@ def inputs_of(run: Run) -> Inputs:
     >>> odometry.inputs_of(run).tread_speeds_m_s.shape
     (1085, 2)
     """
-    return inputs_with_heading(run, _heading(run))
+    return inputs_with_poses(run, _heading(run), _position(run))
 
 
-def inputs_with_heading(run: Run, heading_rad: FloatArray | None) -> Inputs:
-    """As `inputs_of`, with the headings (N,) that were found before; None where none is known."""
+def inputs_with_poses(
+    run: Run, heading_rad: FloatArray | None, position_m: FloatArray | None
+) -> Inputs:
+    """As `inputs_of`, with headings (N,) and positions (N, 2) that were found before, if any."""
     speeds = run.odometry.stack("v_left", "v_right")
     stamps_s = run.odometry.stamps_s
     return Inputs(
@@ -39,6 +42,7 @@ def inputs_with_heading(run: Run, heading_rad: FloatArray | None) -> Inputs:
         row_terrains(run),
         heading_rad,
         _wheel_angles(run),
+        position_m=position_m,
     )
 
 
@@ -67,6 +71,11 @@ def _heading(run: Run) -> FloatArray | None:
     if not measured.any():
         return None
     return np.interp(run.odometry.stamps_s, run.pose.stamps_s[measured], yaw[measured])
+
+
+def _position(run: Run) -> FloatArray | None:
+    stamps_s, poses, _ = measured_poses(run)
+    return positions_at(run.odometry.stamps_s, stamps_s, poses) if len(stamps_s) else None
 
 
 def _wheel_angles(run: Run) -> FloatArray | None:

@@ -12,6 +12,7 @@ CATALOGUE: dict[str, str] = {
     "one_row": "odometry.csv has one row",
     "stamp_unit": "stamps in ns, us or ms",
     "files_apart": "files that share no time: time zone, epoch, another recording",
+    "stamps_lost_digits": "stamps that have lost their last digits",
     "repeated_stamps": "rows that repeat a stamp were dropped",
     "epoch_stamps": "stamps count from 1970",
     "uneven_stamps": "stamps of arrival, in bursts",

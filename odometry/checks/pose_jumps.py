@@ -26,6 +26,8 @@ LEAST_JUMP_M = 0.4
 LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides
 LOST_S = 0.3  # around a jump, in which treads that read zero are its cause
 LEAST_POSES = 20
+STANDING_TIMES = 5.0  # the usual step of a standing robot: noise makes 4.5 of them in minutes
+WANDERS = 4.0  # times its scatter that the noise of a receiver wanders
 SUDDEN_S, SUDDEN = 0.5, 0.6  # to both sides of a jump, within which so much of it happens
 
 
@@ -34,6 +36,7 @@ class Steps:
     """Stamps (M,), measured and reckoned positions (M, 2), size (M,) of the steps between both.
 
     `off` (M, 2) is the difference of both without changes of `window`; None without a heading.
+    `noise_m` is the usual step of a robot that stands, where no heading is known.
     """
 
     stamps_s: FloatArray
@@ -41,6 +44,7 @@ class Steps:
     reckoned: FloatArray
     off: FloatArray | None
     size_m: FloatArray
+    noise_m: float = 0.0
 
 
 def jumps(
@@ -73,8 +77,11 @@ def jumps(
     by_treads = reckoned(evidence, rows, scale)
     off = without_window_changes(evidence, rows, positions - by_treads)
     step = step_sizes(stamps_s, off)
+    noise_m = 0.0
     if evidence.heading is None:
-        step = np.maximum(step - scale * _driven_m(stamps_s, travel_m), 0.0)
+        driven_m = scale * _driven_m(stamps_s, travel_m)
+        noise_m = _noise_m(positions, step[np.isfinite(step) & (driven_m == 0)])
+        step = np.maximum(step - driven_m, 0.0)
     speed = rate_of(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.run.began_s, _widened(left_out_s))
     if known.sum() < LEAST_POSES:
@@ -86,7 +93,7 @@ def jumps(
     odd = known & (step > np.maximum(JUMP_TIMES * usual, least_m * scale + jitter_m))
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
     measured_off = off if evidence.heading is not None else None
-    steps = Steps(stamps_s, positions, by_treads, measured_off, step)
+    steps = Steps(stamps_s, positions, by_treads, measured_off, step, noise_m)
     yield from _findings(evidence, steps, peaks, usual)
 
 
@@ -95,6 +102,7 @@ def _findings(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -
     stood = [i for i in peaks if _stood(of, i)]
     lost = [i for i in peaks if i not in stood and _lost_treads(evidence, of.stamps_s[i])]
     peaks = [i for i in peaks if i not in stood and i not in lost]
+    lost = [i for i in lost if of.size_m[i] > STANDING_TIMES * of.noise_m]
     sudden = [i for i in peaks if _sudden(of, i)]
     if stood:
         yield _slip_episodes(evidence, of.stamps_s[stood], float(of.size_m[stood[0]]))
@@ -104,6 +112,17 @@ def _findings(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -
         yield _pose_jumps(evidence, of.stamps_s[sudden], of.size_m[sudden], usual_m)
     elif peaks:
         yield _drift(evidence, of.stamps_s[peaks[0]], float(of.size_m[peaks].max()), usual_m)
+
+
+def _noise_m(positions_m: FloatArray, standing_m: FloatArray) -> float:
+    """Usual step (S,) of the poses of a robot that stands: noise of a receiver wanders.
+
+    No more than the scatter of positions (M, 2) from one to the next allows: else poses moved
+    while the treads read zero.
+    """
+    bent_m = np.hypot(*np.diff(positions_m, n=2, axis=0).T)
+    most_m = WANDERS * float(np.median(bent_m)) / float(np.sqrt(6 * np.log(4)))
+    return min(float(np.median(standing_m)), most_m) if len(standing_m) else most_m
 
 
 def _drift(evidence: Evidence, at_s: float, farthest_m: float, usual_m: float) -> Finding:

@@ -19,6 +19,7 @@ SHORTEST_PERIOD_S = 2e-5  # nor is any log faster
 EPOCH_S = 1e8  # stamps above count from 1970 (1e8 s is in 1973)
 USUAL_PERIODS_S = (0.002, 2.0)
 LEAST_STEP_S, STEP_PERIODS = 5.0, 20.0  # of a clock that was set, amid rows and to both sides
+MOSTLY_REPEATED = 0.8  # of the rows: no logger writes a stamp five times
 LATER = 0.05  # share of the rows after such a step
 STAMP_UNITS = (("nanoseconds", 1e9), ("microseconds", 1e6), ("milliseconds", 1e3))
 
@@ -40,6 +41,16 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
     """Stamps that are no seconds, and files that share no time with odometry.csv."""
     tables = tables_of(run)
     odometry_s = run.odometry.stamps_s
+    repeated, rows = len(run.odometry.repeated_lines), len(run.odometry)
+    if repeated > MOSTLY_REPEATED * (repeated + rows):
+        yield _refused(
+            "stamps_lost_digits",
+            f"odometry.csv repeats the stamp of the row before in {repeated} of {repeated + rows} "
+            f"rows, so that {counted(rows, 'row')} would be left",
+            "Stamps have lost their last digits (a number of 32 bits, or whole seconds)",
+            "Write the column t with microseconds, or number the rows by their period",
+        )
+        return
     if len(odometry_s) < 2:
         yield _refused(
             "one_row", "odometry.csv has one row", "The recording is empty", "Record again"

@@ -32,6 +32,7 @@ from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, Refer
 from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.reference_step import ClockStep
 from odometry.effects.residual import Residual
+from odometry.effects.residual_of_place import ResidualOfPlace
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.slope_drift import SlopeDrift
 from odometry.effects.slope_icr import SlopeByIcr
@@ -98,7 +99,14 @@ EFFECTS: tuple[type[Effect], ...] = (
     GyroscopeError,
 )
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)
-KNOWN: tuple[type[Effect], ...] = (*EFFECTS, *OUTLIERS, RoundedPositions, Residual, History)
+KNOWN: tuple[type[Effect], ...] = (
+    *EFFECTS,
+    *OUTLIERS,
+    RoundedPositions,
+    Residual,
+    ResidualOfPlace,
+    History,
+)
 BY_FORM = {(effect.name, effect.form): effect for effect in KNOWN}
 
 COURSES = (FromAMoment.name, Gradual.name, InBursts.name)

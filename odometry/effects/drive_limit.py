@@ -15,8 +15,8 @@ from odometry.models.inputs import Inputs
 EDGE_M_S = 0.005  # over which a command begins to act: samples there have a derivative
 BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
-HIGHEST_LEAST_M_S = 0.5
-STARTS_M_S = (0.02, 0.04, 0.06, 0.09, 0.12, 0.15, 0.18, 0.21, 0.25)
+HIGHEST_LEAST_M_S = 1.0
+STARTS_M_S = (*(0.02, 0.04, 0.06, 0.09, 0.12, 0.15, 0.18, 0.21, 0.25), *(0.3, 0.36, 0.43, 0.5, 0.6))
 
 
 class DriveLimit(CommandEffect):

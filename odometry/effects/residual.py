@@ -138,13 +138,7 @@ class Residual(MotionEffect):
         ParameterError
             If the variable was not recorded.
         """
-        variable = variable_of(self.variable, inputs, twist)
-        if variable is None:
-            raise ParameterError(
-                f"the residual is a function of {self.variable!r}, which was not recorded; there "
-                f"are {', '.join(variables_of(inputs, twist))}"
-            )
-        bases = bases_of_treads(variable, self.knots)
+        bases = self.bases(twist, inputs)
         directions = {name: self._direction(name, twist, inputs, base) for name, _ in self.terms}
         made = np.zeros((3, len(self.terms), len(twist)))
         for place, (component, number) in enumerate(self.terms):
@@ -153,6 +147,22 @@ class Residual(MotionEffect):
                 if component not in COMPONENTS or component == COMPONENTS[part]:
                     np.multiply(basis, direction, out=made[part, place])
         return np.moveaxis(made, 0, -1)
+
+    def bases(self, twist: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:
+        """Basis functions (N, B) for the left and the right tread.
+
+        Raises
+        ------
+        ParameterError
+            If the variable was not recorded.
+        """
+        variable = variable_of(self.variable, inputs, twist)
+        if variable is None:
+            raise ParameterError(
+                f"the residual is a function of {self.variable!r}, which was not recorded; there "
+                f"are {', '.join(variables_of(inputs, twist))}"
+            )
+        return bases_of_treads(variable, self.knots)
 
     def _direction(
         self, component: str, twist: FloatArray, inputs: Inputs, base: Base

@@ -15,7 +15,8 @@ OF_TREADS = (  # variables (N, 2): of each tread its own
 )
 WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
     *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
-    *("turn_before", "lateral_acceleration_before"),
+    *("turn_before", "lateral_acceleration_before", "time_since_stop"),
+    *("speed_of_late", "turning_of_late"),
 )
 ACCELERATION_OVER_S = 0.2
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
@@ -23,6 +24,8 @@ REVERSING_M_S = 0.02  # slower is no reversal
 LONG_SINCE_M = 10.0  # before the first reversal
 TURN_OVER_M = 1.0
 FORCE_OVER_S = 1.0
+OF_LATE_S = 8.0  # heat, charge and mud come and go over seconds
+STOP_S = 0.5  # a shorter rest is a reversal
 
 
 def variables_of(inputs: Inputs, twist: FloatArray | None = None) -> dict[str, FloatArray]:
@@ -105,6 +108,20 @@ def _each_since_reversal(inputs: Inputs) -> FloatArray | None:
     return np.stack([_since_reversal(speed, inputs) for speed in (inputs.left, inputs.right)], -1)
 
 
+def _since_stop(inputs: Inputs) -> FloatArray | None:
+    """Time (N,) [s] since both treads last stood, or the start; None of a drive without a stop."""
+    if inputs.time_s is None:
+        return None
+    time_s, _ = _samples(inputs)
+    stands = (np.abs(inputs.tread_speeds_m_s) < REVERSING_M_S).all(axis=-1)
+    moved_s = np.maximum.accumulate(np.where(stands, time_s[0], time_s))
+    rests = stands & (time_s - moved_s >= STOP_S)
+    moving = np.flatnonzero(~stands)
+    if not len(moving) or not rests[moving[0] : moving[-1]].any():
+        return None
+    return np.asarray(time_s - np.maximum.accumulate(np.where(rests, time_s, time_s[0])))
+
+
 def _turn_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
     """Turn (N,) [rad] over the last TURN_OVER_M of travel."""
     if inputs.time_s is None:
@@ -115,15 +132,14 @@ def _turn_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
     return np.asarray(turned_rad - np.interp(travel_m - TURN_OVER_M, travel_m, turned_rad))
 
 
-def _force_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
-    """Mean lateral acceleration (N,) [m/s^2] over the last FORCE_OVER_S."""
+def _mean_before(values: FloatArray, inputs: Inputs, over_s: float) -> FloatArray | None:
+    """Mean (N,) over the time before each sample; before the first there was nothing."""
     if inputs.time_s is None:
         return None
     time_s, steps_s = _samples(inputs)
     ends_s = np.append(time_s, time_s[-1] + steps_s[-1])
-    summed = np.concatenate([[0.0], np.cumsum(twist[:, 0] * twist[:, 2] * steps_s)])
-    ago = np.interp(time_s - FORCE_OVER_S, ends_s, summed)
-    return np.asarray((summed[:-1] - ago) / FORCE_OVER_S)
+    summed = np.concatenate([[0.0], np.cumsum(values * steps_s)])
+    return np.asarray((summed[:-1] - np.interp(time_s - over_s, ends_s, summed)) / over_s)
 
 
 RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
@@ -136,6 +152,10 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "other_tread_speed": lambda inputs: inputs.tread_speeds_m_s[:, ::-1],
     "tread_travel_since_reversal": _each_since_reversal,
     "time": lambda inputs: inputs.time_s,
+    "time_since_stop": _since_stop,
+    "speed_of_late": lambda inputs: _mean_before(
+        np.abs(inputs.tread_speeds_m_s).mean(axis=-1), inputs, OF_LATE_S
+    ),
     "heading": lambda inputs: inputs.heading_rad,
     "wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(None)),
     "left_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(0, 1)),
@@ -148,6 +168,9 @@ SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
         None if inputs.time_s is None else _since_reversal(twist[:, 0], inputs)
     ),
     "turn_before": _turn_before,
-    "lateral_acceleration_before": _force_before,
+    "lateral_acceleration_before": lambda twist, inputs: _mean_before(
+        twist[:, 0] * twist[:, 2], inputs, FORCE_OVER_S
+    ),
+    "turning_of_late": lambda twist, inputs: _mean_before(np.abs(twist[:, 2]), inputs, OF_LATE_S),
 }
 VARIABLES = (*RECORDED, *SIMULATED)

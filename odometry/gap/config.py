@@ -107,6 +107,10 @@ class GapConfig:
     events_told : float
         Area under the curve (ROC) with which a recorded variable may say when events are. True
         bursts have 0.72 at most, a drive that is limited on one side 0.97.
+    by_place : float
+        Probability of events at the same places by chance below which they are no bursts.
+    event_nodes : tuple of int
+        Of the grids of places, at most; patches that matter to treads are small.
     uneven, uneven_probability : float
         Spread of the strength of a name between pieces of the runs, as a share of it, above which
         it is no one strength; and the probability by chance below which that counts. Right names
@@ -140,6 +144,12 @@ class GapConfig:
     knots, tread_knots, even_knots : int
         Of a smooth function; of that of a tread's own motion, to each side of zero; and of one
         whose knots are even in its variable.
+    nodes : tuple of int
+        Of maps of what follows the place, at most; one grid of each number.
+    least_spacing_m : float
+        Between nodes: positions of a reference are off by some centimetres.
+    least_revisited : float
+        Share of the samples at places to which the robot comes back, which a map needs.
     most_effects, most_smooth : int
         Names, and smooth functions where no name is accepted.
     outlier_sigmas : float
@@ -198,6 +208,8 @@ class GapConfig:
     most_without: float = 0.8
     most_beaten: float = 0.1
     events_told: float = 0.85
+    by_place: float = 0.02
+    event_nodes: tuple[int, ...] = (40, 80, 160)
     uneven: float = 0.3
     uneven_probability: float = 0.001
     base_probability: float = 0.001
@@ -216,6 +228,9 @@ class GapConfig:
     knots: int = 5
     tread_knots: int = 4
     even_knots: int = 9
+    nodes: tuple[int, ...] = (16, 40)
+    least_spacing_m: float = 0.3
+    least_revisited: float = 0.25
     most_effects: int = 3
     most_smooth: int = 4
     outlier_sigmas: float = 8.0

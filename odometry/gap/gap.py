@@ -18,6 +18,7 @@ from odometry.gap.answer.answer import (
 )
 from odometry.gap.answer.equivalent import equivalents, rivals_of_one_heading
 from odometry.gap.answer.named_rounding import named_rounding
+from odometry.gap.answer.new_places import terrain_instead
 from odometry.gap.answer.result import Closing, GapResult
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
@@ -158,6 +159,7 @@ def find_gap(
         verdict = "unknown"
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
+    equivalent = (*equivalent, *terrain_instead(fit.effects, equivalent, fitted_scenes))
     return GapResult(
         verdict=verdict,
         effects=named,

@@ -40,6 +40,8 @@ class Inputs:
         Of a gyroscope less its bias, for programs that integrate the yaw with it; no model uses it.
     run_number : (...) of int or None
         Which of several runs a sample is of, from 0; that of one run where absent.
+    position_m : (..., 2) or None
+        Measured x and y, in the frame of the reference, interpolated; None without measured poses.
 
     Examples
     --------
@@ -60,6 +62,7 @@ class Inputs:
     wheel_angles_rad: FloatArray | None = None
     yaw_rate_rad_s: FloatArray | None = None
     run_number: IntArray | None = None
+    position_m: FloatArray | None = None
 
     def __post_init__(self) -> None:
         speeds = np.asarray(self.tread_speeds_m_s)

@@ -16,7 +16,7 @@ from odometry.io.structured import read_toml
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
-from odometry.outputs.manifest import check_first_line, format_line
+from odometry.outputs.manifest import check_first_line, format_line, made_text
 
 FORMAT = 1  # of the file, in its first line
 LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9
@@ -97,7 +97,8 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     }
     with atomic_write(file) as part:
         text = tomli_w.dumps({"modes": head, "mode": tables})
-        part.write_text(format_line("mode set", FORMAT) + comment + text, encoding="utf-8")
+        lines = format_line("mode set", FORMAT) + comment
+        part.write_text(made_text(lines, text), encoding="utf-8")
 
 
 def read_mode_set(file: Path) -> ModeSet:

@@ -1,5 +1,6 @@
 """The file that says what an output folder is: which verb, which format, whether it is whole."""
 
+import hashlib
 import json
 import re
 from collections.abc import Mapping
@@ -13,12 +14,29 @@ from odometry.io.structured import TOML_BYTES, read_json
 
 PROGRAM = "terrain-odometry"
 LINE_BYTES = 200
+CONTENT = "# content: sha256 "
 NAMED_FORMAT = re.compile(rf"# {PROGRAM} ([a-z ]+), format (\d{{1,9}})\r?(?:\n|$)")
 
 
 def format_line(kind: str, version: int) -> str:
     """The first line of a TOML file: what it is and its format version, as a comment."""
     return f"# {PROGRAM} {kind}, format {version}\n"
+
+
+def made_text(head: str, content: str) -> str:
+    """A text of comment lines and content, which says of itself whether it was edited since."""
+    return f"{head}{CONTENT}{_digest(content)}\n{content}"
+
+
+def is_edited(text: str) -> bool:
+    """Whether the content of a `made_text` is another than that it was made with."""
+    _, line, rest = text.partition(CONTENT)
+    digest, _, content = rest.partition("\n")
+    return bool(line) and digest != _digest(content)
+
+
+def _digest(content: str) -> str:
+    return hashlib.sha256(content.encode()).hexdigest()
 
 
 def stated_format(text: str) -> tuple[str, int] | None:

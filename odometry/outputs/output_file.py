@@ -8,6 +8,7 @@ from odometry.errors import OdometryError, OutputError
 from odometry.io.files import check_writable
 from odometry.io.structured import read_toml
 from odometry.outputs.leftovers import remove_temporaries
+from odometry.outputs.manifest import is_edited
 from odometry.outputs.provenance import MADE_BY, RUN_FILES
 
 HEAD_BYTES = 4096  # of a PNG file with its texts, or of a text
@@ -39,20 +40,34 @@ def claim_file(out: Path, is_own: Callable[[Path], bool], verb: str) -> None:
         raise OutputError(f"{out}: {out.parent} is a run folder, and {out.name} a file of its own")
     if (out.exists() or out.is_symlink()) and not (out.is_file() and is_own(out)):
         raise OutputError(
-            f"{out} is there already, and `{verb}` did not make it; choose another file, or "
-            "delete it"
+            f"{out} is there already, and `{verb}` did not make it{_as_it_is(out)}; choose another "
+            "file, or delete it"
         )
     remove_temporaries(out.parent, lambda name: name == out.name)
 
 
+def _as_it_is(out: Path) -> str:
+    """What to add of a file that was made and then edited."""
+    try:
+        return " as it is now: it was edited" if is_edited(out.read_text(encoding="utf-8")) else ""
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
 def is_set_of(verb: str) -> Callable[[Path], bool]:
-    """Whether a TOML file says in its comments, or as version 0.4 did, that `verb` made it."""
+    """Whether a TOML file says in its comments, or as version 0.4 did, that `verb` made it.
+
+    One that was edited since is its user's.
+    """
 
     def is_own(file: Path) -> bool:
         try:
             content = read_toml(file, OdometryError)
-            head = file.read_text(encoding="utf-8").split("\n", 2)[:2]
+            text = file.read_text(encoding="utf-8")
         except (OdometryError, OSError):
+            return False
+        head = text.split("\n", 2)[:2]
+        if is_edited(text):
             return False
         return head[-1] == f"# {MADE_BY}{verb}" or _is_of_version_0_4(content, verb)
 

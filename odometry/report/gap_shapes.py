@@ -8,11 +8,13 @@ from matplotlib.figure import Figure
 from odometry.arrays import FloatArray
 from odometry.effects.history import BOTH, History
 from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variables_of
+from odometry.effects.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.answer import WITHIN_95
 from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.gap.locate.region_words import noun_of, shown_unit
 from odometry.report.figure import save_figure
 from odometry.report.gap_figures import AFTER, WIDTH_IN
+from odometry.report.gap_places import place_picture
 from odometry.report.html import Picture
 
 POINTS = 200
@@ -31,9 +33,12 @@ def shape_pictures(result: GapResult, folder: Path) -> list[Picture]:
     """One for each smooth function that was added."""
     found: list[Picture] = []
     for effect in result.effects:
-        if isinstance(effect.added.effect, Residual):
-            file = folder / f"gap_shape_{len(found) + 1}.png"
-            found.append(_picture(result, effect, effect.added.effect, file))
+        file = folder / f"gap_shape_{len(found) + 1}.png"
+        residual = effect.added.effect
+        if isinstance(residual, ResidualOfPlace):
+            found.append(place_picture(result, effect, residual, file))
+        elif isinstance(residual, Residual):
+            found.append(_picture(result, effect, residual, file))
     return found
 
 

@@ -47,6 +47,11 @@ def of_robot(run: Run, poses: FloatArray) -> FloatArray:
     return np.column_stack([se2.transform(poses, -arm_m), poses[:, 2]])
 
 
+def positions_at(time_s: FloatArray, stamps_s: FloatArray, poses: FloatArray) -> FloatArray:
+    """Positions (N, 2) at times (N,), between poses (M, 2 or 3) and held beyond them."""
+    return np.column_stack([np.interp(time_s, stamps_s, poses[:, k]) for k in (0, 1)])
+
+
 def measured_positions(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stamps (M,), positions (M, 2) and source windows (M,) of rows with x and y, yaw or not.
 

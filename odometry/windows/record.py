@@ -11,11 +11,11 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
 from odometry.run import Run
-from odometry.run_inputs import inputs_with_heading
+from odometry.run_inputs import inputs_with_poses
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.measured_poses import measured_poses, measured_positions
+from odometry.windows.measured_poses import measured_poses, measured_positions, positions_at
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 
@@ -135,7 +135,8 @@ def _record(run: Run, config: WindowConfig, measured: _Poses) -> Record:
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
     yaw_rad = poses[:, 2]
     heading_rad = None if np.isnan(yaw_rad).any() else np.interp(odometry_s, pose_s, yaw_rad)
-    inputs = inputs_with_heading(run, heading_rad).rows(rows)
+    position_m = positions_at(odometry_s, pose_s, poses)
+    inputs = inputs_with_poses(run, heading_rad, position_m).rows(rows)
     inputs = replace(inputs, time_s=stamps_s - odometry_s[0])
     speed = np.abs(inputs.tread_speeds_m_s).mean(axis=1)
     travel_m = np.concatenate([[0.0], np.cumsum(speed[:-1] * np.diff(stamps_s))])

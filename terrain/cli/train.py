@@ -120,6 +120,7 @@ def train(
     """
     from terrain.classification.manifest import read_manifest
     from terrain.classification.model_file import is_model
+    from terrain.classification.photo_faults import look_alikes
     from terrain.classification.training import train as train_classifier
     from terrain.cli.outputs import claim_file
     from terrain.cli.train_text import (
@@ -162,6 +163,14 @@ def train(
         click.echo(
             f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
             f"others is a group of its own, such as {min(photos - grouped)}",
+            err=True,
+        )
+    if alike := look_alikes(dict(zip(loaded.photos, loaded.groups, strict=True))):
+        one, other = alike[0]
+        click.echo(
+            f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
+            f"and {other}: copies, or frames of one scene. What is held out is no test then; give "
+            "photographs of one scene the same photo_id in manifest.csv",
             err=True,
         )
     if colour and not classifier.colour_:

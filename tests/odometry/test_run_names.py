@@ -26,6 +26,25 @@ def test_no_folder_is_there_twice_however_it_is_written(make_run):
         check_no_run_twice([run, again])
 
 
+POSE_CSV = "t,x,y,yaw\n0,0,0,0\n0.1,0.05,0,0.1\n"
+
+
+def test_copies_of_a_recording_are_one_whatever_their_stamps(make_run, tmp_path):
+    run = Run.read(make_run(pose=POSE_CSV))
+
+    def later(table):
+        return replace(table, columns={**table.columns, "t": table["t"] + 1.7e9})
+
+    copied = replace(
+        run, folder=tmp_path / "copy", odometry=later(run.odometry), pose=later(run.pose)
+    )
+    with pytest.raises(RunFolderError, match=r"a_run and .*copy hold the same recording"):
+        check_no_run_twice([run, copied])
+    moved = replace(run.pose, columns={**run.pose.columns, "x": run.pose["x"] + 0.01})
+    check_no_run_twice([run, replace(copied, pose=moved)])
+    check_no_run_twice([replace(run, pose=None), replace(copied, pose=None)])  # commands
+
+
 def test_robots_have_short_names_where_these_distinguish_them():
     assert list(robot_labels([Robot(0.5, "A (new)"), Robot(0.6, "B (new)")]).values()) == ["A", "B"]
     alike = [Robot(0.5, "A (old)"), Robot(0.5, "A (new)"), Robot(0.5)]

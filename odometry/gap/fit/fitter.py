@@ -161,7 +161,13 @@ class Fitter:
     ) -> float:
         own = columns_of(candidate, simulated, self.measured.whiteners)
         own = np.pad(own, ((0, len(design.rows) - len(own)), (0, 0)))
-        return left_out_loss(np.hstack([design.jacobian, own]), design.rows, self.measured)
+        jacobian, rows = np.hstack([design.jacobian, own]), design.rows
+        _, spread = candidate.usual(self.calibration.base)
+        if np.isfinite(spread).any():
+            known = np.pad(np.diag(1 / spread), ((0, 0), (design.jacobian.shape[1], 0)))
+            jacobian = np.concatenate([jacobian, known])
+            rows = np.concatenate([rows, np.zeros(len(known))])
+        return left_out_loss(jacobian, rows, self.measured)
 
     def _starts(
         self, effects: Sequence[Effect], known: Sequence[FloatArray | None]

@@ -106,6 +106,7 @@ SPOKEN: Mapping[str, Signed | Plain] = {
     ),
     "speed_difference": Plain("difference of tread speeds", "m/s"),
     "time": Plain("run time", "s", 1.0, "after", "before"),
+    "time_since_stop": Plain("time since the last stop", "s", 1.0, "after", "before"),
     "left_wheel_angle": Plain("angle of the left wheels", "degrees", DEGREES),
     "right_wheel_angle": Plain("angle of the right wheels", "degrees", DEGREES),
     "speed_before": Plain("previous speed", "m/s"),
@@ -117,6 +118,7 @@ SPOKEN: Mapping[str, Signed | Plain] = {
 
 NAMES = {
     "turn": "direction of turning",
+    "place": "place",
     "terrain": "terrain",
     "tread_speed": "speed of each tread",
     "tread_acceleration": "acceleration of each tread",
@@ -124,6 +126,8 @@ NAMES = {
     "tread_travel_since_reversal": "travel of each tread since it last reversed",
     "travel_since_reversal": "travel since the last reversal",
     "turn_before": "turn over the last metre",
+    "speed_of_late": "mean speed over the last 8 seconds",
+    "turning_of_late": "mean size of the yaw rate over the last 8 seconds",
     "lateral_acceleration_before": "lateral acceleration over the last second",
     "wheel_angle": "angle of the wheels",
 }

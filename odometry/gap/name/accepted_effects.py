@@ -16,7 +16,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_the_main_part
 from odometry.gap.name.search import Search
-from odometry.gap.name.sudden import sudden_wheels
+from odometry.gap.name.sudden import is_of_slow_wheels, sudden_instead, sudden_wheels
 from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course
 from odometry.gap.name.verdict import (
     closes_a_part,
@@ -40,12 +40,15 @@ class Standing(Search):
 
         Where no name does, one in bursts or wheels from a moment on may; else smooth functions do
         as far as they can, and their residuals may follow a course in time that is each run's own.
+        Wheels that seem to change slowly may do so at a moment.
         """
         found = self._less_doubtful(self._of_their_form(found, smooth))
         if not found.has_name:
             sudden = of_their_form(self, sudden_wheels(self, found), smooth)
             named = [one for one in (in_bursts(self, found), sudden) if one.steps]
             found = min([grown(self, found), *named], key=lambda one: one.cost)
+        elif any(is_of_slow_wheels(effect) for effect in found.effects):
+            found = of_their_form(self, sudden_instead(self, found), smooth)
         found = self._without_structure(self._standing(found, smooth), smooth)
         if not found.has_name and (found.steps or self.unexplained() or self.is_above):
             found = self._standing(with_course(self, found), smooth)

@@ -23,6 +23,7 @@ from odometry.effects.residual import (
 )
 from odometry.effects.residual_variables import WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
+from odometry.gap.name.places import maps
 from odometry.windows.dense import DenseWindows
 
 MOTIONS = (  # components, each by what it may grow with
@@ -55,7 +56,7 @@ def general_candidates(
         found.append(Residual(name, _every(COMPONENTS, len(knots)), "", knots))
         if name == "time":
             found.append(Residual(name, _every(TREADS, len(knots)), "speed", knots))
-    return tuple(found)
+    return (*found, *maps(scenes, config))
 
 
 def shares_of_motion(

@@ -11,17 +11,19 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.history import History
 from odometry.effects.residual import ANGLES, OF_TREADS, Residual, ResidualOfEachRun, variables_of
+from odometry.effects.residual_of_place import ResidualOfPlace
 from odometry.effects.time_course import InBursts
 from odometry.gap.fit.bursts import InCourse, burst_effects
 from odometry.gap.fit.contest import Judged, judge, penalty
 from odometry.gap.fit.course import best_course
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_values import with_values_of_each_run
+from odometry.gap.name.events_at_places import chance_of_places
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import slow_course_instead
 from odometry.gap.name.general import general_candidates, single_candidates
 from odometry.gap.name.search import Search
-from odometry.gap.name.verdict import come_by_themselves, leaves_noise
+from odometry.gap.name.verdict import come_anywhere, come_by_themselves, leaves_noise
 from odometry.gap.prepare.measured import at_fewer_poses
 from odometry.windows.dense import DenseWindows
 
@@ -67,7 +69,9 @@ def _follow_a_variable(search: Search, found: Explanation) -> str:
     for effect in found.effects:
         if isinstance(effect, InCourse) and isinstance(effect.in_time, InBursts):
             followed = variable_of_events(effect.in_time, scenes, base)
-            reason = come_by_themselves(*followed, search.config)
+            reason = come_by_themselves(*followed, search.config) or come_anywhere(
+                chance_of_places(effect.in_time, scenes, search.config), search.config
+            )
             if reason:
                 return reason
     return ""
@@ -119,7 +123,7 @@ def last_of_each_run(search: Search, found: Explanation) -> Explanation | None:
     """
     last = found.fitted.effects[-1]
     if not isinstance(last.effect, Residual) or isinstance(
-        last.effect, ResidualOfEachRun | History
+        last.effect, ResidualOfEachRun | ResidualOfPlace | History
     ):
         return None
     before = found.less_last().fitted

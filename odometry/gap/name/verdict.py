@@ -176,6 +176,16 @@ def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
     )
 
 
+def come_anywhere(chance: float, config: GapConfig) -> str:
+    """Whether events do not come at the same places again, but by chance."""
+    if chance >= config.by_place:
+        return ""
+    return (
+        "its events come at the same places each time (by chance as well in "
+        f"{100 * chance:.1f} % of cases): it depends on place, and does not come in bursts"
+    )
+
+
 def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) -> str:
     """Whether nothing predicts what names leave that close no more than a share of the gap."""
     found = [one.name for one in predictors if one.discovered]

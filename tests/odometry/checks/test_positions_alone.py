@@ -37,6 +37,29 @@ def test_noisy_positions_have_no_warning(sigma_m):
     assert warnings(without_yaw(run)) == []
 
 
+def stop_and_go(sigma_m, seed):
+    """Ten minutes of 10 s of driving and 10 s of rest, positions at 1 Hz."""
+    at_s = 0.05 * np.arange(12_000)
+    goes = np.sin(at_s * np.pi / 10) > 0
+    run = drive(0.7 * goes, 0.3 * np.sin(at_s / 4) * goes)
+    noise = np.random.default_rng(seed).normal(scale=sigma_m, size=(2, len(run.pose)))
+    noisy = put(run, "pose", x=run.pose["x"] + noise[0], y=run.pose["y"] + noise[1])
+    every = slice(None, None, round(1 / float(np.median(np.diff(run.pose.stamps_s)))))
+    return without_yaw(replace(noisy, pose=noisy.pose.rows(every)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_of_a_receiver_while_the_robot_stands_is_no_lost_odometry(seed):
+    assert "treads_frozen" not in warnings(stop_and_go(0.5, seed))
+
+
+def test_odometry_that_is_lost_is_warned_of_beside_noise():
+    run = stop_and_go(0.02, 0)
+    lost = (run.odometry["t"] > 200.0) & (run.odometry["t"] < 210.0)
+    kept = {name: np.where(lost, 0.0, run.odometry[name]) for name in ("v_left", "v_right")}
+    assert "treads_frozen" in warnings(put(run, "odometry", **kept))
+
+
 def test_a_robot_that_turns_on_the_spot_has_no_course():
     at_s = 0.05 * np.arange(4000)
     run = without_yaw(drive(np.full(4000, 0.01), 0.6 * np.sign(np.sin(at_s / 3))))

@@ -160,3 +160,13 @@ def test_a_gyroscope_that_turns_against_the_treads_asks_for_its_attitude(recordi
     found = check_recording(treads(run, lambda left, right: (right, left))).findings[0]
     assert found.name == "treads_or_gyroscope_reversed"
     assert words in found.remedy
+
+
+def test_stamps_of_few_digits_are_refused_with_their_cause(make_run):
+    rows = [
+        f"{np.float32(1.7e9 + 0.05 * row):.3f},0.5,{0.5 + 0.001 * row:.3f}" for row in range(600)
+    ]
+    report = check_recording(make_run(odometry="\n".join(["t,v_left,v_right", *rows, ""])))
+    (found,) = report.findings
+    assert (found.name, found.level) == ("stamps_lost_digits", Level.REFUSED)
+    assert "599 of 600 rows" in found.seen

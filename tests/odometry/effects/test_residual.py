@@ -160,3 +160,45 @@ def test_coefficients_of_each_run_act_in_that_run_alone(bench, rng):
         own = inputs.run_number == number
         np.testing.assert_allclose(found[own], added(plain, values, inputs)[own], atol=1e-15)
     assert count == len(found)
+
+
+def test_means_of_late():
+    """Over the last eight seconds, of which there were three before the first second."""
+    time_s = np.arange(0.0, 30.0, 0.1)
+    fast = time_s < 10.0
+    speeds = np.column_stack([np.where(fast, 0.8, 0.0), np.where(fast, -0.4, 0.0)])
+    twist = np.column_stack([speeds[:, 0], speeds[:, 0], np.where(fast, -0.5, 0.0)])
+    found = variables_of(Inputs(speeds, time_s=time_s), twist)
+    for name, while_fast in (("speed_of_late", 0.6), ("turning_of_late", 0.5)):
+        for at_s, share in ((0.0, 0.0), (4.0, 0.5), (9.0, 1.0), (12.0, 0.75), (25.0, 0.0)):
+            at = round(10 * at_s)
+            assert found[name][at] == pytest.approx(share * while_fast, abs=1e-9), (name, at_s)
+
+
+def test_time_since_a_stop_of_both_treads():
+    time_s = np.arange(0.0, 10.0, 0.25)
+    left = np.where((time_s >= 4.0) & (time_s < 5.5), 0.0, 0.5)
+    right = np.where((time_s >= 3.0) & (time_s < 5.5), 0.0, 0.5)
+    found = variables_of(Inputs(np.column_stack([left, right]), time_s=time_s))
+    since = found["time_since_stop"]
+    np.testing.assert_allclose(since[:17], time_s[:17])  # since the start
+    assert since[time_s == 5.25] == 0.0
+    np.testing.assert_allclose(since[time_s > 5.5], time_s[time_s > 5.5] - 5.25)
+
+
+@pytest.mark.parametrize(
+    "stands",
+    [
+        lambda t: t < 0,
+        lambda t: t < 3.0,
+        lambda t: t > 7.0,
+        lambda t: (t > 5.0) & (t < 5.3),
+        lambda t: t < 99,
+    ],
+    ids=["never", "at the start", "at the end", "too short", "always"],
+)
+def test_a_drive_without_a_stop_has_no_time_since_one(stands):
+    time_s = np.arange(0.0, 10.0, 0.1)
+    speed = np.where(stands(time_s), 0.0, 0.5)
+    found = variables_of(Inputs(np.column_stack([speed, speed]), time_s=time_s))
+    assert "time_since_stop" not in found

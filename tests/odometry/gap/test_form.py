@@ -66,16 +66,18 @@ def test_a_name_that_passed_by_what_another_did_is_tested_again(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("cost", "area", "slow", "stands"),
+    ("cost", "of_events", "stands"),
     [
-        (1500.0, 0.6, "", True),
-        (2500.0, 0.6, "", False),
-        (1500.0, 0.97, "", False),
-        (1500.0, 0.6, "a slow course explains more", False),
+        (1500.0, (0.6, 0.5, ""), True),
+        (2500.0, (0.6, 0.5, ""), False),
+        (1500.0, (0.97, 0.5, ""), False),
+        (1500.0, (0.6, 0.005, ""), False),
+        (1500.0, (0.6, 0.5, "a slow course explains more"), False),
     ],
 )
-def test_events_close_nearly_all_by_themselves_and_at_once(monkeypatch, cost, area, slow, stands):
-    """Of an excess of 10 000, 95 or 85 % close; a variable says when, or a slow course is more."""
+def test_events_close_nearly_all_by_themselves_and_at_once(monkeypatch, cost, of_events, stands):
+    """Of an excess of 10 000, 95 or 85 % close; a variable or the place says when, or a course."""
+    area, chance, slow = of_events
     effect = in_course(TractionLoss(), InBursts((((1.0, 2.0),),)))
     start = SimpleNamespace(cost=11_000.0, effects=())
     fitted = SimpleNamespace(cost=cost, effects=(Added(effect, np.array([0.5, 0.5])),))
@@ -83,6 +85,7 @@ def test_events_close_nearly_all_by_themselves_and_at_once(monkeypatch, cost, ar
     monkeypatch.setattr("odometry.gap.name.unnamed.burst_effects", lambda *_: (effect,))
     monkeypatch.setattr("odometry.gap.name.unnamed.judge", lambda *args: [step for _ in args[2]])
     monkeypatch.setattr("odometry.gap.name.unnamed.variable_of_events", lambda *_: ("speed", area))
+    monkeypatch.setattr("odometry.gap.name.unnamed.chance_of_places", lambda *_: chance)
     monkeypatch.setattr("odometry.gap.name.unnamed.slow_course_instead", lambda *_: slow)
     refused = []
     fitter = SimpleNamespace(

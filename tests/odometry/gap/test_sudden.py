@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from odometry.effects.in_course import in_course
-from odometry.effects.time_course import FromAMoment
+from odometry.effects.time_course import FromAMoment, Gradual
+from odometry.effects.time_offset import TimeOffset
 from odometry.effects.tread_slip import TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.sudden import sudden_wheels
+from odometry.gap.name.sudden import sudden_instead, sudden_wheels
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import floor_of
 
@@ -60,3 +61,27 @@ def test_what_begins_at_a_moment_has_to_close_nearly_all(study):
         sudden = in_course(effect, FromAMoment())
         assert search._most_fitted([sudden]) == CONFIG.bursts_closed
         assert search._most_fitted([effect]) == CONFIG.mostly_closed
+
+
+@pytest.mark.parametrize(
+    ("share", "course"),
+    [(lambda t: t > MOMENT_S, "from_a_moment"), (lambda t: np.clip(t / t[-1], 0, 1), "gradual")],
+    ids=["a step", "a ramp"],
+)
+def test_a_step_takes_the_place_of_a_ramp_where_it_is_one(study, share, course):
+    _, search = study(share)
+    last_s = search.fitter.measured.scenes[0].time_s[-1]
+    slow = in_course(WheelScale(), Gradual(float(last_s)))
+    ramp = search.in_order(Explanation(search.start, (), ()), [slow])
+    found = sudden_instead(search, ramp)
+    assert [effect.course for effect in found.effects] == [course]
+    assert found.cost <= ramp.cost
+
+
+def test_names_beside_the_wheels_stay(study):
+    _, search = study(lambda t: t > MOMENT_S)
+    slow = in_course(WheelScale(), Gradual(160.0))
+    both = search.in_order(Explanation(search.start, (), ()), [TimeOffset(), slow])
+    found = sudden_instead(search, both)
+    assert [effect.name for effect in found.effects] == ["time_offset", "wheel_scale"]
+    assert found.effects[-1].course == "from_a_moment"

@@ -33,6 +33,21 @@ def test_a_set_that_says_which_verb_made_it_is_that_verbs_own(tmp_path, made):
         claim(file)
 
 
+def test_a_set_that_was_edited_since_is_its_users(tmp_path, made):
+    file = tmp_path / "set.toml"
+    write_set(file, comment=made.to_comment())
+    claim(file, made.verb)
+    for edited in ('\n[terrain.asphalt]\nmodel = "icr"\n', "# measured by hand\n"):
+        with file.open("a", encoding="utf-8") as stream:
+            stream.write(edited)
+        kept = file.read_bytes()
+        with pytest.raises(OutputError, match="did not make it as it is now: it was edited"):
+            claim(file, made.verb)
+        assert file.read_bytes() == kept
+        file.unlink()
+        write_set(file, comment=made.to_comment())
+
+
 @pytest.mark.parametrize(
     ("source", "is_own"),
     [

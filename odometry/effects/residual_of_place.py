@@ -1,0 +1,106 @@
+"""A part of the motion that follows where the robot is: a map of it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base_model import Base
+from odometry.effects.residual import CARRIERS, COMPONENTS, TREADS, WORLD, Residual
+from odometry.errors import ParameterError
+from odometry.models.inputs import Inputs
+from odometry.parameter_covariance import finite_number
+
+PLACE = "place"
+
+
+@dataclass(frozen=True)
+class ResidualOfPlace(Residual):
+    """The same of the measured position: bilinear between the nodes of a square grid.
+
+    Of `Residual`, `variable` is PLACE, a term is a component and the number of a node, and `knots`
+    are not used. Where no node is near it adds nothing.
+
+    Attributes
+    ----------
+    spacing_m : float
+        Between neighbouring nodes.
+    nodes : tuple of (int, int)
+        Each node lies at so many spacings along x and y.
+    spread : float
+        Standard deviation about zero that is expected of a coefficient: a few windows at a node
+        do not determine it.
+    """
+
+    variable: str = PLACE
+    spacing_m: float = 1.0
+    nodes: tuple[tuple[int, int], ...] = ()
+    spread: float = 0.1
+
+    def __post_init__(self) -> None:
+        known = (*COMPONENTS, *WORLD, *TREADS)
+        numbers = range(len(self.nodes))
+        if self.variable != PLACE or self.knots:
+            raise ParameterError(f"a residual of {self.variable!r} with nodes, expected {PLACE!r}")
+        if self.by not in CARRIERS:
+            raise ParameterError(f"by = {self.by!r}, expected one of {', '.join(CARRIERS[1:])}")
+        for name, size in (("spacing_m", self.spacing_m), ("spread", self.spread)):
+            if not finite_number(size, name) > 0:
+                raise ParameterError(f"{name} = {size}, expected more than 0")
+        for term in self.terms:
+            if len(term) != 2 or term[0] not in known or term[1] not in numbers:
+                raise ParameterError(
+                    f"the residual has a term {term!r}, expected one of {', '.join(known)} and "
+                    f"a number below {len(self.nodes)}"
+                )
+
+    form = "map"
+    equation = "twist + sum of c_ij hat_j(x, y)"
+    looks_like = "errors at the same places each time"
+    remedy = "look at what lies there: label another terrain, or correct the map of the reference"
+    needs = "measured positions"
+
+    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the interface
+        """See `Effect.usual`."""
+        count = len(self.parameters)
+        return np.zeros(count), np.full(count, self.spread)
+
+    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
+        """See `Effect.lacks`."""
+        return "" if inputs.position_m is not None else PLACE
+
+    def bases(self, twist: FloatArray, inputs: Inputs) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
+        """See `Residual.bases`.
+
+        Raises
+        ------
+        ParameterError
+            If no positions were measured.
+        """
+        if inputs.position_m is None:
+            raise ParameterError("the residual is a function of place: no positions were measured")
+        hats = self.hats(np.asarray(inputs.position_m))
+        return hats, hats
+
+    def hats(self, position_m: FloatArray) -> FloatArray:
+        """Weight (N, B) of each node at positions (N, 2)."""
+        nodes = np.array(self.nodes, dtype=np.float64).reshape(-1, 2)
+        apart = np.abs(position_m[:, None] / self.spacing_m - nodes)
+        return np.asarray(np.maximum(1.0 - apart, 0.0).prod(axis=-1))
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """See `Effect.key`: a finer map beside a coarse one is another."""
+        name, form, by = super().key
+        return name, f"{form}, {self.spacing_m:.3g} m", by
+
+    def settings(self) -> dict[str, Any]:
+        """See `Effect.settings`."""
+        return {
+            "by": self.by,
+            "spacing_m": self.spacing_m,
+            "nodes": [list(node) for node in self.nodes],
+            "spread": self.spread,
+            "terms": [list(term) for term in self.terms],
+        }

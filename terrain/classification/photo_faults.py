@@ -1,0 +1,105 @@
+"""Folders of photographs that are not what they seem: classes that vanish, copies, one video."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from odometry.arrays import FloatArray
+from terrain.errors import PatchError
+
+OTHER_SUFFIXES = (".webp", ".tif", ".tiff", ".bmp", ".gif", ".heic", ".avif", ".ppm", ".pgm")
+THUMBNAIL_PX = 24
+BLUR_PX = 2.0  # of the halved image: noise and compression do not count
+ALIKE = 0.97  # correlation of thumbnails; of 401 photographs of terrain 0.96 at most
+
+
+def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -> None:
+    """Refuse folders of which a class would vanish, or be taken for two.
+
+    Parameters
+    ----------
+    root : Path
+        Of `root/<class>/photograph`.
+    classes : sequence of str
+        Names of folders that hold photographs.
+    suffixes : sequence of str
+        Of photographs.
+
+    Raises
+    ------
+    PatchError
+        If a folder holds images of another format alone, or photographs in folders within, or two
+        names differ by case or spaces alone.
+    """
+    for folder in sorted(path for path in root.iterdir() if path.is_dir()):
+        if folder.name in classes or folder.name.startswith("."):
+            continue
+        for path in sorted(folder.rglob("*")):
+            if path.suffix.lower() in (*OTHER_SUFFIXES, *suffixes) and path.is_file():
+                raise PatchError(
+                    f"{folder} holds no photographs that are read, but {path.relative_to(folder)}; "
+                    f"expected {folder}/*.jpg or *.png: convert or move its images"
+                )
+    names: dict[str, list[str]] = defaultdict(list)
+    for name in classes:
+        names["".join(name.casefold().split())].append(name)
+    for alike in names.values():
+        if len(alike) > 1:
+            raise PatchError(
+                f"{root}: {' and '.join(map(repr, alike))} differ by case or spaces alone; "
+                "expected one folder for each terrain"
+            )
+
+
+def check_no_photo_in_two_classes(photos: Sequence[tuple[Path, str]]) -> None:
+    """Refuse files of the same bytes under two labels.
+
+    Raises
+    ------
+    PatchError
+        That names both.
+    """
+    of_size: dict[int, list[tuple[Path, str]]] = defaultdict(list)
+    for path, label in photos:
+        of_size[path.stat().st_size].append((path, label))
+    for same_size in of_size.values():
+        known: dict[bytes, tuple[Path, str]] = {}
+        for path, label in same_size if len(same_size) > 1 else ():
+            other, labelled = known.setdefault(path.read_bytes(), (path, label))
+            if labelled != label:
+                raise PatchError(
+                    f"{other} and {path} are the same photograph, labelled {labelled!r} and "
+                    f"{label!r}; expected one label for each"
+                )
+
+
+def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
+    """Photographs that look nearly like one of another group, each with that one.
+
+    By the correlation of small blurred thumbnails: images of one scene, frames of a camera that
+    hardly moves, copies that were compressed again. Those without any contrast are like none.
+    """
+    photos = list(group_of)
+    thumbnails = np.stack([_thumbnail(photo) for photo in photos])
+    alike = thumbnails @ thumbnails.T
+    group = np.unique(list(group_of.values()), return_inverse=True)[1]
+    alike[group[:, None] == group] = -1.0
+    nearest = alike.argmax(axis=1)
+    found = np.flatnonzero(alike[np.arange(len(photos)), nearest] > ALIKE)
+    return [(photos[int(i)], photos[int(nearest[i])]) for i in found]
+
+
+def _thumbnail(photo: Path) -> FloatArray:
+    """Values (N,) of mean zero and length one; zero of an image that is flat or not read."""
+    image = cv2.imread(str(photo), cv2.IMREAD_REDUCED_GRAYSCALE_2)
+    if image is None:
+        return np.zeros(THUMBNAIL_PX**2)
+    blurred = cv2.GaussianBlur(image, (0, 0), BLUR_PX)
+    size = (THUMBNAIL_PX, THUMBNAIL_PX)
+    values = cv2.resize(blurred, size, interpolation=cv2.INTER_AREA).astype(np.float64).ravel()
+    values -= values.mean()
+    length = float(np.linalg.norm(values))
+    return values / length if length > THUMBNAIL_PX else np.zeros_like(values)

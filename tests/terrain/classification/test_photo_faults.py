@@ -1,0 +1,72 @@
+"""Folders of photographs of which a class would vanish, or that are no independent photographs."""
+
+import cv2
+import numpy as np
+import pytest
+
+from terrain.classification.patches import find_photos
+from terrain.classification.photo_faults import look_alikes
+from terrain.errors import PatchError
+
+
+@pytest.fixture
+def write(tmp_path, rng):
+    """Write an image of blobs, or the one given, and return both."""
+
+    def make(name, image=None):
+        if image is None:
+            blobs = cv2.GaussianBlur(rng.normal(size=(120, 160)), (0, 0), 6)
+            image = np.clip(128 + 400 * blobs, 0, 255).astype(np.uint8)
+        file = tmp_path / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        cv2.imwrite(str(file), image)
+        return file, image
+
+    return make
+
+
+@pytest.mark.parametrize("lost", ["mud/a.webp", "mud/b.TIF", "mud/day_1/c.jpg"])
+def test_a_class_does_not_vanish(tmp_path, write, lost):
+    write("sand/a.jpg")
+    file = tmp_path / lost
+    file.parent.mkdir(parents=True)
+    file.write_bytes(b"an image of another format")
+    with pytest.raises(PatchError, match=r"mud holds no photographs that are read, but .*[abc]\."):
+        find_photos(tmp_path)
+
+
+def test_other_folders_are_no_classes(tmp_path, write):
+    write("sand/a.jpg")
+    for name in ("notes/read.me", ".cache/a.webp", "empty/.keep"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text("text", encoding="utf-8")
+    assert [photo.label for photo in find_photos(tmp_path)] == ["sand"]
+
+
+@pytest.mark.parametrize("other", ["Sand", "sand ", "SAND"])
+def test_two_spellings_are_no_two_classes(tmp_path, write, other):
+    write("sand/a.jpg")
+    write(f"{other}/b.jpg")
+    with pytest.raises(PatchError, match="differ by case or spaces alone"):
+        find_photos(tmp_path)
+
+
+def test_a_photograph_has_one_label(tmp_path, write):
+    _, image = write("sand/a.png")
+    write("sand/copy.png", image)  # of the same class: look_alikes says so
+    assert len(find_photos(tmp_path)) == 2
+    write("mud/b.png", image)
+    with pytest.raises(PatchError, match="are the same photograph, labelled 'mud' and 'sand'"):
+        find_photos(tmp_path)
+
+
+def test_frames_of_one_scene_look_alike_and_other_photographs_do_not(write, rng):
+    first, image = write("sand/a.jpg")
+    noisy = np.clip(image + rng.normal(scale=10, size=image.shape), 0, 255).astype(np.uint8)
+    second, _ = write("sand/b.jpg", noisy)
+    third, _ = write("sand/c.jpg")
+    flat = [write(f"sand/flat_{n}.png", np.full((64, 64), 90, np.uint8))[0] for n in range(2)]
+    photos = [first, second, third, *flat]
+    own_groups = {photo: str(photo) for photo in photos}
+    assert look_alikes(own_groups) == [(first, second), (second, first)]
+    assert look_alikes({**own_groups, first: "scene", second: "scene"}) == []
