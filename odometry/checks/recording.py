@@ -137,7 +137,7 @@ def _skipped(evidence: Evidence) -> Iterator[str]:
     if evidence.positions_measured is None:
         yield "no measured poses: distances, yaw and delays were not checked against them"
     elif not evidence.yaw_measured:
-        yield "poses without yaw: headings were not checked against them"
+        yield "poses without yaw: headings and delays were not checked against them"
     if evidence.yaw_rate is None:
         yield "no gyroscope: turns were not checked against it"
 

@@ -85,17 +85,18 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
             "Negate v_left and v_right",
             treads_times(-1.0, -1.0),
         )
-    more = (
-        "; or x, y and yaw are in a frame with z down (NED)" if gyroscope is Sense.UNKNOWN else ""
-    )
+    sensors = "y and yaw" if gyroscope is Sense.UNKNOWN else "gyro_z, y and yaw"
+    more = f"; or {sensors} are in frames with z down (NED, FRD: as autopilots log them)"
+    remedy = f"Exchange v_left and v_right; where z points down, negate {sensors} instead"
     if not evidence.yaw_measured:
+        remedy = "Exchange v_left and v_right"
         more = ", or both have the wrong sign: without yaw these cannot be distinguished"
     return _finding(
         "treads_swapped",
         f"measured turns are against the treads ({_correlations(evidence)})"
         + (", motion along the way is not" if evidence.yaw_measured else ""),
         f"Left and right treads are swapped{more}",
-        "Exchange v_left and v_right",
+        remedy,
         exchanged,
     )
 

@@ -22,6 +22,7 @@ WIDEST_M = 50.0  # no robot is wider
 FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight
 STEADY = 0.98  # correlation from which a factor on straight lines is constant
 DEGREES = 0.07  # logarithm of a factor by 180 / pi, as poses measure it; gradians are 0.105 off
+HALF_ANGLE = 0.07  # the same, by 2
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
 
 
@@ -36,13 +37,20 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         if degrees
         else "The gyroscope has a wrong scale (another unit, such as gradians, or full-scale range)"
     )
+    remedy = "Convert gyro_z to rad/s"
+    if evidence.yaw_measured and abs(abs(np.log(factor)) - np.log(2)) < HALF_ANGLE:
+        speed = "half" if factor > 1 else "twice"
+        cause += f"; or stamps are those of a replay at {speed} the speed"
+        if factor > 1:
+            cause += "; or yaw is half of the right one (of a quaternion, without its factor of 2)"
+        remedy += ", if that is it: compare with a turn by hand, and the duration with a watch"
     return Finding(
         "gyroscope_unit",
         Level.WARNING,
         f"gyro_z of {evidence.gyroscope_file} is {factor:.3g} times the turn rate that poses or "
         "treads have",
         cause,
-        "Convert gyro_z to rad/s",
+        remedy,
         mend=gyroscope_times(evidence.run, 1 / factor),
     )
 

@@ -165,6 +165,9 @@ class GapConfig:
         With which the calibration runs may have as many by chance.
     most_windows : int
         Where there are more, as many of them at even distances are used to fit.
+    most_poses : int
+        Of a window, after its first: 20 a second. The time that a fit takes grows with more than
+        their number.
     """
 
     horizon_s: float = 2.0
@@ -239,6 +242,7 @@ class GapConfig:
     jumping_times: float = 4.0
     outlier_probability: float = 0.001
     most_windows: int = 300
+    most_poses: int = 40
 
     def __post_init__(self) -> None:
         require_positive(

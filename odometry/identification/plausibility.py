@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.fit import Fit
 from odometry.identification.fitted import NORMAL, deviations_within
 from odometry.models.base import Parameter
+from odometry.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.record import (
     CHANGE_OF_TERRAIN,
@@ -100,6 +101,23 @@ def _at_bounds(fit: Fit) -> tuple[str, ...]:
 def _is_neutral(parameter: Parameter, value: float) -> bool:
     """Whether a value at a bound is the one without effect: the other bound is far from it."""
     return parameter.neutral is not None and abs(value - parameter.neutral) < NEAR_BOUND
+
+
+def turns_outside(fit: Fit, robot: Robot) -> str:
+    """That a robot seems to turn about a point ahead of it or behind it; "" where it does not.
+
+    Its treads resist, so that it turns about a point between its ends. Half of a length that is
+    not stated is taken as the track width.
+    """
+    x_m = fit.values.get("x_icr", 0.0)
+    half_m = robot.length / 2 if robot.length else robot.track_width
+    if abs(x_m) <= half_m:
+        return ""
+    point, side = ("ahead of its front", "behind") if x_m > 0 else ("behind its rear", "ahead of")
+    return (
+        f"x_icr = {x_m:.4g} m: the robot would turn about a point {point}. The reference is "
+        f"probably {abs(x_m):.2g} m {side} the robot's origin: state it in [sensors] pose"
+    )
 
 
 def notes(fit: Fit) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ SURE = 4.0  # standard deviations, of the lag, of the step and of the turn by im
 EDGE_M = 0.1  # travel in the time of the lag: labels that are off by less hardly matter
 LARGER = 1.2  # of a step by images over that of the treads, or the inverse: treads may slip
 ASIDE_RAD, BACKWARDS_DEG = float(np.radians(10.0)), 150.0
+POOR = 3.0  # times the usual deviations: steady cameras on terrain have 1
 MIRRORED = -0.5  # of a turn by images over that of the robot
 
 
@@ -42,7 +43,13 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
             f"{LARGEST_LAG_S:g} s (images of another drive or upside down, a camera that rocks, or "
             "a robot that always moves in the same way)"
         )
-    return list(_findings(motion, camera.height_m)), ""
+    found = list(_findings(motion, camera.height_m))
+    if not found and motion.noise > POOR:
+        return [], (
+            "whether images show the motion of the treads: they agree, but poorly (images upside "
+            "down or of another lens, or a camera that rocks)"
+        )
+    return found, ""
 
 
 def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:

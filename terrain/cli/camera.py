@@ -1,5 +1,6 @@
 """`terrain-odometry camera`: the terrain in the camera's image, and the calibration."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -228,15 +229,16 @@ def _next(
     run_folder: Path, out: Path, placed: "MountSource | None", model: Path | None, *, asks: bool
 ) -> str:
     """What to do next, in one line."""
-    verb = f"terrain-odometry camera {run_folder}"
+    run, made, table = (shlex.quote(str(path)) for path in (run_folder, out, out / "camera.toml"))
+    verb = f"terrain-odometry camera {run}"
     if placed is None:
         return (
-            f"Next: where the camera sits is not known: {verb} --file {out / 'camera.toml'} "
-            f"--points marked.csv --out {out} (u,v,x,y of at least 4 points of the terrain), or "
+            f"Next: where the camera sits is not known: {verb} --file {table} "
+            f"--points marked.csv --out {made} (u,v,x,y of at least 4 points of the terrain), or "
             "--from-motion"
         )
     look = f"look at {out / 'figures'}: do grid and footprint lie where they should?"
     if asks:
         return f"Next: {look} Then the same command with --write puts [camera] into run.toml"
-    run = f"terrain-odometry run {run_folder} --model {model or 'MODEL'} --out results"
-    return f"Next: {look} Then {run}"
+    named = shlex.quote(str(model)) if model else "MODEL"
+    return f"Next: {look} Then terrain-odometry run {run} --model {named} --out results"

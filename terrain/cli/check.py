@@ -1,8 +1,9 @@
 """`terrain-odometry check`: what is odd about recordings, before anything is fitted to them."""
 
 import json
+import shlex
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,15 +90,15 @@ def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path])
     if not odd:
         with_poses = [folder for folder in reports if (folder / "pose.csv").exists()]
         if not with_poses:
-            return f"Next: {look}terrain-odometry run {next(iter(reports))} --out results"
-        runs = " ".join(map(str, with_poses))
+            return f"Next: {look}terrain-odometry run {_quoted(reports)[0]} --out results"
+        runs = " ".join(_quoted(with_poses))
         if all(_is_no_drive(reports[folder]) for folder in with_poses):
             return (
                 f"Next: {look}record turns to both sides, of several radii and speeds: identify "
                 f"refuses {runs}"
             )
         return f"Next: {look}terrain-odometry identify {runs} --model icr --out my_robot.toml"
-    readable = [str(folder) for folder, report in odd.items() if not report.at(Level.REFUSED)]
+    readable = _quoted(folder for folder, report in odd.items() if not report.at(Level.REFUSED))
     if readable and not files:
         look = f"terrain-odometry check {' '.join(readable)} --picture pictures; "
     slipping = [str(folder) for folder, report in odd.items() if _only_slips(report)]
@@ -111,6 +112,11 @@ def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path])
             "mended then); else mend the scale that is wrong, and check again"
         )
     return f"Next: {look}{'; '.join(advice)}"
+
+
+def _quoted(folders: Iterable[Path]) -> list[str]:
+    """Paths as a shell reads them."""
+    return [shlex.quote(str(folder)) for folder in folders]
 
 
 def _is_no_drive(report: "CheckReport") -> bool:

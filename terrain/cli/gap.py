@@ -1,5 +1,6 @@
 """`terrain-odometry gap`: which effect a model lacks, and the gap closed."""
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -101,7 +102,7 @@ def gap(
     print_written(out)
     extended = (
         f"; the extended model is {out / 'model.toml'}: terrain-odometry compare RUN "
-        f"--model {out / 'model.toml'} --model {base.name} --out DIR"
+        f"--model {shlex.quote(str(out / 'model.toml'))} --model {base.name} --out DIR"
     )
     click.echo(f"Next: open {out / 'report.html'}{extended if result.effects else ''}")
 

@@ -77,7 +77,7 @@ def write_ros(ros: Path, runs: "Sequence[Run]", found: "Identification", comment
 
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
-    from odometry.identification.plausibility import notes, short_windows
+    from odometry.identification.plausibility import notes, short_windows, turns_outside
     from odometry.identification.report import report
     from odometry.identification.stretch_fit import position_notes
     from odometry.windows.record import words
@@ -87,6 +87,7 @@ def print_identification(found: "Identification") -> None:
         short = short_windows(of_terrain.fit.windows, found.window_config)
         doubts = (
             *notes(of_terrain.fit),
+            turns_outside(of_terrain.fit, found.robot),
             *_assumed(of_terrain),
             *_no_gain(of_terrain),
             of_terrain.halves and of_terrain.halves.note(),

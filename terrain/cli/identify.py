@@ -156,10 +156,11 @@ def _next(identified: "ParameterSet", out: Path, terrain: str | None) -> str:
     from odometry.estimation.terrain_beliefs import ICR_FORM_MODELS
 
     named = f" --terrain {shlex.quote(terrain)}" if terrain else ""
+    made = shlex.quote(str(out))
     said = (
         f"Next, on a run that is not among these: terrain-odometry compare RUN{named} "
-        f"--model {out} --model differential_drive --out comparison"
+        f"--model {made} --model differential_drive --out comparison"
     )
     if all(table.model in ICR_FORM_MODELS for table in identified.terrains.values()):
-        said += f"\nor:   terrain-odometry run RUN{named} --parameters {out} --out results"
+        said += f"\nor:   terrain-odometry run RUN{named} --parameters {made} --out results"
     return said

@@ -1,5 +1,6 @@
 """`terrain-odometry identify-feel`: how terrains feel, from recorded runs."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -53,7 +54,7 @@ def identify_feel(
     _print(model)
     write_feel_model(out, model, made.to_table())
     click.echo(f"Wrote {out}")
-    click.echo(f"Next: terrain-odometry feel RUN --model {out} --out felt")
+    click.echo(f"Next: terrain-odometry feel RUN --model {shlex.quote(str(out))} --out felt")
 
 
 def _print(model: "FeelModel") -> None:

@@ -1,5 +1,6 @@
 """`terrain-odometry identify-modes`: models of terrains or slipping wheels from recorded runs."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -117,7 +118,7 @@ def identify_modes(
     mode_set = ModeSet(modes, np.full(len(modes.names), dwell), source)
     write_mode_set(out, mode_set, comment(made))
     click.echo(f"Wrote {out}")
-    click.echo(f"Next: terrain-odometry modes RUN --models {out} --out modes")
+    click.echo(f"Next: terrain-odometry modes RUN --models {shlex.quote(str(out))} --out modes")
 
 
 def _print_velocity(modes: "VelocityModes") -> None:

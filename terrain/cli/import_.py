@@ -1,5 +1,6 @@
 """`terrain-odometry import`: a run folder from bags."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -183,9 +184,10 @@ def _list(bags: tuple[Path, ...]) -> None:
         make_plan(found, TopicMap())
     except BagError as problem:
         click.echo(f"Note: {problem}")
-    named = " ".join(map(str, bags))
+    named = " ".join(shlex.quote(str(bag)) for bag in bags)
     wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
-    click.echo(f"Next: terrain-odometry import {named} --out {_run_name(bags[0])}{wheels}")
+    out = shlex.quote(_run_name(bags[0]))
+    click.echo(f"Next: terrain-odometry import {named} --out {out}{wheels}")
 
 
 def _run_name(bag: Path) -> str:

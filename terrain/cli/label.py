@@ -1,5 +1,6 @@
 """The verb that cuts labelled patches from recordings."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -160,4 +161,4 @@ def label(
         moved = sum(each.label != each.of.label for each in ground.chosen)
         click.echo(f"Corrections kept: {moved} moved, {len(corrections.removed)} removed.")
     click.echo(f"\nWrote {out}. Look at {out}/contact_sheet_*.png; move or delete wrong patches.")
-    click.echo(f"Next: terrain-odometry train {out} --out terrain.model")
+    click.echo(f"Next: terrain-odometry train {shlex.quote(str(out))} --out terrain.model")

@@ -1,5 +1,6 @@
 """`terrain-odometry simulate`: a run from the contact simulator, without images."""
 
+import shlex
 from difflib import get_close_matches
 from math import radians
 from pathlib import Path
@@ -219,10 +220,11 @@ def simulate(
 
 def _next(out: Path, terrain: str | None) -> str:
     """What to do with the run; it has several tractions where it has no one terrain."""
+    made = shlex.quote(str(out))
     if terrain is None:
         return (
             "Next: terrain-odometry identify-modes RUN... --out modes.toml, with a run of each "
             "traction (simulate --traction NAME, once each), then\n"
-            f"      terrain-odometry modes {out} --models modes.toml --out modes"
+            f"      terrain-odometry modes {made} --models modes.toml --out modes"
         )
-    return f"Next: terrain-odometry identify {out} --model icr --out my_robot.toml"
+    return f"Next: terrain-odometry identify {made} --model icr --out my_robot.toml"

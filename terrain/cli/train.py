@@ -1,5 +1,6 @@
 """The verb that trains a terrain classifier from labelled photographs."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -193,7 +194,7 @@ def train(
     if hasattr(classifier, "cross_validation_"):  # a model that was kept as it is has none
         click.echo(summary(classifier, loaded))
     write_reliability_picture(picture, classifier, loaded)
-    click.echo(f"\nWrote {out}. Next: terrain-odometry classify {out} IMAGE...")
+    click.echo(f"\nWrote {out}. Next: terrain-odometry classify {shlex.quote(str(out))} IMAGE...")
 
 
 def _grouped(patches: "LabelledPatches") -> set[Path]:

@@ -12,6 +12,7 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.frozen import Isolated
 from odometry.gap.prepare.held_out import Apart, apart
 from odometry.gap.prepare.jumps import Jumps
+from odometry.gap.prepare.measured import with_fewer_poses
 from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
 from odometry.gap.prepare.rounding import rounded_m
 from odometry.positions.heading import Headed
@@ -32,8 +33,12 @@ def dealt(
 
 
 def scene_of(run: Run, config: GapConfig) -> DenseWindows:
-    """Windows of a run, with the step to which its positions were rounded."""
-    scene = averaged_windows(dense_windows_of(run, config.horizon_s))
+    """Windows of a run, with the step to which its positions were rounded.
+
+    Of poses at a high rate some, evenly: each costs time, and noise of neighbours is alike.
+    """
+    dense = with_fewer_poses(dense_windows_of(run, config.horizon_s), config.most_poses)
+    scene = averaged_windows(dense)
     return replace(scene, rounded_m=rounded_m(run))
 
 

@@ -154,3 +154,15 @@ def test_a_stated_attitude_is_doubted_before_the_gyroscope_is_negated(attitude_r
     assert ("[sensors] imu" in found.cause) == bool(attitude_rad)
     assert ("[sensors] imu" in found.remedy) == bool(attitude_rad)
     assert "egate gyro_z of imu.csv" in found.remedy
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [(2.0, "replay at half the speed; or yaw is half"), (0.5, "replay at twice the speed")],
+)
+def test_a_rate_that_is_off_by_two_may_be_of_a_replay(factor, words):
+    run = turning_all_round()
+    scaled = put(run, "odometry", gyro_z=factor * run.odometry["gyro_z"])
+    (found,) = check_recording(scaled).at(Level.WARNING)
+    assert found.name == "gyroscope_unit"
+    assert words in found.cause

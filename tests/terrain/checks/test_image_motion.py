@@ -12,7 +12,8 @@ import terrain
 from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import ground_steps
-from terrain.checks.image_motion import image_motion
+from terrain.checks.image_agreement import ImageMotion
+from terrain.checks.image_motion import POOR, image_motion
 from tests.studies.check_image_motion import moved, with_images
 
 
@@ -124,3 +125,10 @@ def test_images_upside_down_are_not_accused_of_anything_else(drive, camera, tmp_
     findings, skipped = image_motion(Run.read(folder), camera)
     assert not findings
     assert "upside down" in skipped
+
+
+def test_motion_that_agrees_poorly_is_not_taken_for_checked(drive, camera, monkeypatch):
+    monkeypatch.setattr(ImageMotion, "noise", POOR + 0.5)
+    findings, skipped = image_motion(drive, camera)
+    assert not findings
+    assert "poorly" in skipped
