@@ -48,6 +48,8 @@ def claim_file(out: Path, is_own: Callable[[Path], bool], verb: str) -> None:
 
 def _as_it_is(out: Path) -> str:
     """What to add of a file that was made and then edited."""
+    if not out.is_file():  # a pipe would never end
+        return ""
     try:
         return " as it is now: it was edited" if is_edited(out.read_text(encoding="utf-8")) else ""
     except (OSError, UnicodeDecodeError):
