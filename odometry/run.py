@@ -201,8 +201,8 @@ def check_no_run_twice(runs: Sequence[Run]) -> None:
 
 
 def _are_copies(run: Run, other: Run) -> bool:
-    """Whether two runs have the same poses and speeds, at whatever stamps."""
-    if run.pose is None or other.pose is None:
+    """Whether two runs of a robot have the same poses and speeds, at whatever stamps."""
+    if run.robot != other.robot or run.pose is None or other.pose is None:
         return False
     pairs = ((run.odometry, other.odometry), (run.pose, other.pose))
     return all(_are_equal(one, another) for one, another in pairs)

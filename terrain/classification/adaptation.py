@@ -16,6 +16,7 @@ from terrain.classification.patches import (
     load_patches,
     stated_metres_per_pixel,
 )
+from terrain.classification.photo_faults import check_no_photo_in_two_classes
 from terrain.classification.trained_on import TrainedOn
 from terrain.classification.training import Training
 from terrain.errors import PatchError
@@ -87,6 +88,7 @@ def adapt(
     if old.old_samples_ is None:
         raise PatchError("the old model holds no samples (version 0.9, or chen2023): train it anew")
     photos = find_photos(Path(root))
+    check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
     patches = load_patches(photos, old.patch_size_px)
     single = min(Counter(photo.label for photo in photos).values()) < 2
     used = _in_parts(patches) if single else patches

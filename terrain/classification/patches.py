@@ -10,7 +10,7 @@ import numpy as np
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.manifest import Manifest, read_manifest
-from terrain.classification.photo_faults import check_classes, check_no_photo_in_two_classes
+from terrain.classification.photo_faults import check_classes
 from terrain.classification.trained_on import TrainedOn, image_sum
 from terrain.errors import PatchError
 from terrain.images import read_image
@@ -64,8 +64,8 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     ------
     PatchError
         If `root` is not a folder, holds no photographs, or uses the reserved name ``unknown``,
-        if a class would vanish or be taken for two, if a photograph has two labels, or if the
-        manifest is damaged or names none of the photographs.
+        if a class would vanish or be taken for two, or if the manifest is damaged or names none
+        of the photographs.
     """
     if not root.is_dir():
         raise PatchError(f"{root} is not a folder; expected {root}/<class>/*.jpg or *.png")
@@ -74,7 +74,6 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     check_classes(root, sorted({path.parent.name for path in paths}), SUFFIXES)
     if not paths:
         raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
-    check_no_photo_in_two_classes([(path, path.parent.name) for path in paths])
     groups = _photo_ids(read_manifest(root), paths)
     photos = [
         LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))

@@ -13,6 +13,7 @@ from terrain.classification.patches import (
     load_patches,
     stated_metres_per_pixel,
 )
+from terrain.classification.photo_faults import check_no_photo_in_two_classes
 
 LARGEST_PATCH_PX = 128
 
@@ -104,6 +105,7 @@ def train(
     """
     root = Path(root)
     photos = find_photos(root)
+    check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
     size_px = patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos))
     patches = load_patches(photos, size_px)
     scale = metres_per_pixel or stated_metres_per_pixel(root)
