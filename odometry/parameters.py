@@ -140,8 +140,8 @@ def write_parameters(file: str | Path, parameters: ParameterSet, comment: str = 
         content["vehicle"] = dict(parameters.vehicle)
     content["terrain"] = {name: _table(of) for name, of in parameters.terrains.items()}
     with atomic_write(Path(file)) as part:
-        head = format_line("parameter set", FORMAT) + comment
-        part.write_text(made_text(head, tomli_w.dumps(content)), encoding="utf-8")
+        head = format_line("parameter set", FORMAT)
+        part.write_text(made_text(head, comment, tomli_w.dumps(content)), encoding="utf-8")
 
 
 def _terrain(table: Any, name: str, where: str) -> TerrainParameters:

@@ -97,8 +97,8 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     }
     with atomic_write(file) as part:
         text = tomli_w.dumps({"modes": head, "mode": tables})
-        lines = format_line("mode set", FORMAT) + comment
-        part.write_text(made_text(lines, text), encoding="utf-8")
+        line = format_line("mode set", FORMAT)
+        part.write_text(made_text(line, comment, text), encoding="utf-8")
 
 
 def read_mode_set(file: Path) -> ModeSet:

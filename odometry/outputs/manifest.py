@@ -23,9 +23,13 @@ def format_line(kind: str, version: int) -> str:
     return f"# {PROGRAM} {kind}, format {version}\n"
 
 
-def made_text(head: str, content: str) -> str:
-    """A text of comment lines and content, which says of itself whether it was edited since."""
-    return f"{head}{CONTENT}{_digest(content)}\n{content}"
+def made_text(head: str, comment: str, content: str) -> str:
+    """A first line, comment lines and content.
+
+    Where a comment says what made it, the text says of itself whether it was edited since.
+    """
+    digest = f"{CONTENT}{_digest(content)}\n" if comment else ""
+    return f"{head}{comment}{digest}{content}"
 
 
 def is_edited(text: str) -> bool:
