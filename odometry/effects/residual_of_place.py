@@ -48,6 +48,9 @@ class ResidualOfPlace(Residual):
         for name, size in (("spacing_m", self.spacing_m), ("spread", self.spread)):
             if not finite_number(size, name) > 0:
                 raise ParameterError(f"{name} = {size}, expected more than 0")
+        nodes: object = self.nodes  # a table of a file may hold anything
+        if not isinstance(nodes, tuple) or not all(map(_is_node, nodes)):
+            raise ParameterError(f"nodes = {nodes!r}, expected pairs of whole numbers")
         for term in self.terms:
             if len(term) != 2 or term[0] not in known or term[1] not in numbers:
                 raise ParameterError(
@@ -104,3 +107,7 @@ class ResidualOfPlace(Residual):
             "spread": self.spread,
             "terms": [list(term) for term in self.terms],
         }
+
+
+def _is_node(node: object) -> bool:
+    return isinstance(node, tuple) and len(node) == 2 and all(type(one) is int for one in node)

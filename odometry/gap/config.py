@@ -250,7 +250,7 @@ class GapConfig:
             *("horizon_s", "part_s", "least_evidence", "least_excess", "near_bound"),
             *("sure", "surely", "far_off"),
             *("equivalent_margin", "general_margin", "unexplained", "left_over", "contact_spread"),
-            *("turns_above", "turns_times", "hardly"),
+            *("turns_above", "turns_times", "hardly", "least_spacing_m"),
             "uneven",
         )
         require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
@@ -279,6 +279,8 @@ class GapConfig:
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
         require(self.knots >= 2, f"knots = {self.knots}, expected 2 or more")
+        require(min(self.nodes) >= 2, f"nodes = {self.nodes}, expected 2 or more each")
+        require(self.most_poses >= 2, f"most_poses = {self.most_poses}, expected 2 or more")
         require(self.even_knots >= 2, f"even_knots = {self.even_knots}, expected 2 or more")
         require(self.tread_knots >= 1, f"tread_knots = {self.tread_knots}, expected 1 or more")
         require(self.trimmed >= 1, f"trimmed = {self.trimmed}, expected 1 or more")

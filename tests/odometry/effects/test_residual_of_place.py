@@ -73,6 +73,9 @@ def test_without_positions_it_says_so():
         ({"variable": "heading"}, "expected 'place'"),
         ({"by": "v_y"}, "expected one of speed"),
         ({"spread": -1.0}, "expected more than 0"),
+        ({"nodes": ((0.5, 1),)}, "expected pairs of whole numbers"),
+        ({"nodes": ((0,),)}, "expected pairs of whole numbers"),
+        ({"nodes": "ab"}, "expected pairs of whole numbers"),
     ],
 )
 def test_a_wrong_setting_is_an_error(settings, said):
