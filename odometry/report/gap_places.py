@@ -41,8 +41,10 @@ def place_picture(
             mesh = _draw_map(axes, edges_m, of)
             for scene in result.measured_scenes:
                 axes.plot(*scene.poses[:, :2].T, color="#555555", linewidth=0.5)
-            figure.colorbar(mesh, ax=axes).set_label(units[component])
-            axes.set_title(COMPONENTS.get(component, component), loc="left")
+            figure.colorbar(mesh, ax=axes)
+            name = COMPONENTS.get(component, component)
+            axes.set_title(f"{name} [{units[component]}]", loc="left")
+        panels[0].set_ylabel("y [m]")
         figure.subplots_adjust(left=0.1, right=0.95, bottom=0.16, top=0.9, wspace=0.35)
 
     return Picture(
@@ -91,5 +93,4 @@ def _draw_map(axes: Axes, edges_m: tuple[FloatArray, FloatArray], values: FloatA
     mesh = axes.pcolormesh(*edges_m, shown, vmin=-most, vmax=most, cmap="PuOr", rasterized=True)
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
     return mesh
