@@ -68,13 +68,12 @@ class Residual(MotionEffect):
         knots = [finite_number(knot, "knots: one") for knot in self.knots]
         if sorted(set(knots)) != knots:
             raise ParameterError(f"knots = {knots}, expected increasing numbers")
-        functions = len(self.knots) or 2 * HARMONICS + 1
         for term in self.terms:
             known = TREADS if self.variable in OF_TREADS else (*COMPONENTS, *WORLD, *TREADS)
-            if len(term) != 2 or term[0] not in known or term[1] not in range(functions):
+            if len(term) != 2 or term[0] not in known or term[1] not in range(self.functions):
                 raise ParameterError(
                     f"the residual has a term {term!r}, expected one of {', '.join(known)} "
-                    f"and a number below {functions}"
+                    f"and a number below {self.functions}"
                 )
 
     name = "unknown"
@@ -85,6 +84,11 @@ class Residual(MotionEffect):
     looks_like = "errors that follow the variable"
     remedy = "look for what depends on this variable"
     needs = "the variable"
+
+    @property
+    def functions(self) -> int:
+        """How many basis functions there are."""
+        return len(self.knots) or 2 * HARMONICS + 1
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

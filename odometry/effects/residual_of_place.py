@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
-from odometry.effects.residual import CARRIERS, COMPONENTS, TREADS, WORLD, Residual
+from odometry.effects.residual import Residual
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
@@ -39,30 +39,26 @@ class ResidualOfPlace(Residual):
     spread: float = 0.1
 
     def __post_init__(self) -> None:
-        known = (*COMPONENTS, *WORLD, *TREADS)
-        numbers = range(len(self.nodes))
+        nodes: object = self.nodes  # a table of a file may hold anything
         if self.variable != PLACE or self.knots:
             raise ParameterError(f"a residual of {self.variable!r} with nodes, expected {PLACE!r}")
-        if self.by not in CARRIERS:
-            raise ParameterError(f"by = {self.by!r}, expected one of {', '.join(CARRIERS[1:])}")
+        if not isinstance(nodes, tuple) or not all(map(_is_node, nodes)):
+            raise ParameterError(f"nodes = {nodes!r}, expected pairs of whole numbers")
         for name, size in (("spacing_m", self.spacing_m), ("spread", self.spread)):
             if not finite_number(size, name) > 0:
                 raise ParameterError(f"{name} = {size}, expected more than 0")
-        nodes: object = self.nodes  # a table of a file may hold anything
-        if not isinstance(nodes, tuple) or not all(map(_is_node, nodes)):
-            raise ParameterError(f"nodes = {nodes!r}, expected pairs of whole numbers")
-        for term in self.terms:
-            if len(term) != 2 or term[0] not in known or term[1] not in numbers:
-                raise ParameterError(
-                    f"the residual has a term {term!r}, expected one of {', '.join(known)} and "
-                    f"a number below {len(self.nodes)}"
-                )
+        super().__post_init__()
 
     form = "map"
     equation = "twist + sum of c_ij hat_j(x, y)"
     looks_like = "errors at the same places each time"
     remedy = "look at what lies there: label another terrain, or correct the map of the reference"
     needs = "measured positions"
+
+    @property
+    def functions(self) -> int:
+        """See `Residual.functions`: one of each node."""
+        return len(self.nodes)
 
     def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the interface
         """See `Effect.usual`."""

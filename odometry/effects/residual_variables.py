@@ -16,7 +16,7 @@ OF_TREADS = (  # variables (N, 2): of each tread its own
 WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
     *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
     *("turn_before", "lateral_acceleration_before", "time_since_stop"),
-    *("speed_of_late", "turning_of_late"),
+    *("mean_speed_before", "mean_turning_before"),
 )
 ACCELERATION_OVER_S = 0.2
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
@@ -24,7 +24,7 @@ REVERSING_M_S = 0.02  # slower is no reversal
 LONG_SINCE_M = 10.0  # before the first reversal
 TURN_OVER_M = 1.0
 FORCE_OVER_S = 1.0
-OF_LATE_S = 8.0  # heat, charge and mud come and go over seconds
+MEAN_OVER_S = 8.0  # heat, charge and mud come and go over seconds
 STOP_S = 0.5  # a shorter rest is a reversal
 
 
@@ -153,8 +153,8 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "tread_travel_since_reversal": _each_since_reversal,
     "time": lambda inputs: inputs.time_s,
     "time_since_stop": _since_stop,
-    "speed_of_late": lambda inputs: _mean_before(
-        np.abs(inputs.tread_speeds_m_s).mean(axis=-1), inputs, OF_LATE_S
+    "mean_speed_before": lambda inputs: _mean_before(
+        np.abs(inputs.tread_speeds_m_s).mean(axis=-1), inputs, MEAN_OVER_S
     ),
     "heading": lambda inputs: inputs.heading_rad,
     "wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(None)),
@@ -171,6 +171,8 @@ SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
     "lateral_acceleration_before": lambda twist, inputs: _mean_before(
         twist[:, 0] * twist[:, 2], inputs, FORCE_OVER_S
     ),
-    "turning_of_late": lambda twist, inputs: _mean_before(np.abs(twist[:, 2]), inputs, OF_LATE_S),
+    "mean_turning_before": lambda twist, inputs: _mean_before(
+        np.abs(twist[:, 2]), inputs, MEAN_OVER_S
+    ),
 }
 VARIABLES = (*RECORDED, *SIMULATED)

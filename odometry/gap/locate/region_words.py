@@ -126,8 +126,8 @@ NAMES = {
     "tread_travel_since_reversal": "travel of each tread since it last reversed",
     "travel_since_reversal": "travel since the last reversal",
     "turn_before": "turn over the last metre",
-    "speed_of_late": "mean speed over the last 8 seconds",
-    "turning_of_late": "mean size of the yaw rate over the last 8 seconds",
+    "mean_speed_before": "mean speed over the last 8 seconds",
+    "mean_turning_before": "mean size of the yaw rate over the last 8 seconds",
     "lateral_acceleration_before": "lateral acceleration over the last second",
     "wheel_angle": "angle of the wheels",
 }

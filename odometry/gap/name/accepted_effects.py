@@ -16,7 +16,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_the_main_part
 from odometry.gap.name.search import Search
-from odometry.gap.name.sudden import is_of_slow_wheels, sudden_instead, sudden_wheels
+from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
 from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course
 from odometry.gap.name.verdict import (
     closes_a_part,
@@ -47,7 +47,7 @@ class Standing(Search):
             sudden = of_their_form(self, sudden_wheels(self, found), smooth)
             named = [one for one in (in_bursts(self, found), sudden) if one.steps]
             found = min([grown(self, found), *named], key=lambda one: one.cost)
-        elif any(is_of_slow_wheels(effect) for effect in found.effects):
+        elif any(is_gradual_wheel_scale(effect) for effect in found.effects):
             found = of_their_form(self, sudden_instead(self, found), smooth)
         found = self._without_structure(self._standing(found, smooth), smooth)
         if not found.has_name and (found.steps or self.unexplained() or self.is_above):

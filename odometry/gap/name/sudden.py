@@ -43,7 +43,7 @@ def sudden_wheels(search: Search, found: Explanation) -> Explanation:
     return replace(nothing.with_step(best), contests=contests)
 
 
-def is_of_slow_wheels(effect: Effect) -> bool:
+def is_gradual_wheel_scale(effect: Effect) -> bool:
     """Whether wheels change their size over the whole run."""
     return (effect.name, effect.course) == (WheelScale.name, Gradual.name)
 
@@ -56,7 +56,7 @@ def sudden_instead(search: Search, found: Explanation) -> Explanation:
     others = [
         effect
         for effect in found.effects
-        if not (isinstance(effect, Residual) or is_of_slow_wheels(effect))
+        if not (isinstance(effect, Residual) or is_gradual_wheel_scale(effect))
     ]
     instead = search.in_order(found, [*others, _wheels_from_a_moment(search)])
     last = instead.steps[-1]

@@ -162,14 +162,14 @@ def test_coefficients_of_each_run_act_in_that_run_alone(bench, rng):
     assert count == len(found)
 
 
-def test_means_of_late():
+def test_means_over_the_time_before():
     """Over the last eight seconds, of which there were three before the first second."""
     time_s = np.arange(0.0, 30.0, 0.1)
     fast = time_s < 10.0
     speeds = np.column_stack([np.where(fast, 0.8, 0.0), np.where(fast, -0.4, 0.0)])
     twist = np.column_stack([speeds[:, 0], speeds[:, 0], np.where(fast, -0.5, 0.0)])
     found = variables_of(Inputs(speeds, time_s=time_s), twist)
-    for name, while_fast in (("speed_of_late", 0.6), ("turning_of_late", 0.5)):
+    for name, while_fast in (("mean_speed_before", 0.6), ("mean_turning_before", 0.5)):
         for at_s, share in ((0.0, 0.0), (4.0, 0.5), (9.0, 1.0), (12.0, 0.75), (25.0, 0.0)):
             at = round(10 * at_s)
             assert found[name][at] == pytest.approx(share * while_fast, abs=1e-9), (name, at_s)
