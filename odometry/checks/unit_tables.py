@@ -26,6 +26,8 @@ def tread_units(wheel_radius_m: float | None, period_s: float = 0.0) -> tuple[Un
         Unit("km/h", 3.6),
         Unit("miles per hour", 2.23694),
         Unit("feet per second", 3.28084),
+        Unit("feet per minute", 196.850),
+        Unit("inches per second", 39.3701),
     )
     if wheel_radius_m is None:
         return linear
@@ -61,7 +63,7 @@ def matching(
     return near if low <= ratio(near) <= high else None
 
 
-RARE = ("miles per hour", "feet per second")  # in robotics
+RARE = ("miles per hour", "feet per second", "feet per minute", "inches per second")  # in robotics
 EQUAL = (0.8, 1.25)  # ratio of factors that cannot be distinguished
 
 

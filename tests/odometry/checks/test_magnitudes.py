@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
+from odometry.checks.unit_tables import Unit, as_likely
 from tests.odometry.checks.faulty import positions, put, treads
 from tests.odometry.checks.test_other_robots import winding
 
@@ -76,3 +77,8 @@ def test_positions_rounded_before_noise_are_noticed(rng):
     ]
     assert found.name == "coarse_positions"
     assert "0.1 m" in found.seen
+
+
+def test_units_of_nearly_one_factor_are_not_distinguished():
+    said = as_likely(Unit("feet per minute", 196.85), 0.3, 0.05)
+    assert said == ["in degrees per second", "in feet per minute"]
