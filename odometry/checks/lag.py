@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from odometry.arrays import FloatArray
 
 Signal = Callable[[FloatArray], FloatArray]
+Rate = Callable[[FloatArray, float], FloatArray]  # of stamps, over a width [s] around each
 GRID_S = 0.05
 LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
@@ -49,14 +51,21 @@ class Lag:
 def lag_between(
     late: Signal, early: Signal, span_s: tuple[float, float], width_s: float, most_s: float
 ) -> Lag | None:
+    """The lag of one heading behind another: `lag_of_rates` of their differences over a width."""
+    return lag_of_rates(partial(_rate, late), partial(_rate, early), span_s, width_s, most_s)
+
+
+def lag_of_rates(
+    late: Rate, early: Rate, span_s: tuple[float, float], width_s: float, most_s: float
+) -> Lag | None:
     """The lag of `late` behind `early`, from pieces of the time between two stamps.
 
-    Both are integrals (headings); their rates are differences over the same width, so that the
-    filter shifts neither. None where fewer than three pieces have a clear peak.
+    Both are rates over the same width, so that the filter shifts neither. None where fewer than
+    three pieces have a clear peak.
 
     Parameters
     ----------
-    late, early : callable of stamps (K,) to (K,)
+    late, early : callable of stamps (K,) and a width [s] to (K,)
     span_s : (float, float)
         Stamps.
     width_s : float
@@ -80,16 +89,16 @@ def lag_between(
 
 
 def _peak(
-    late: Signal, early: Signal, span_s: tuple[float, float], width_s: float, most_s: float
+    late: Rate, early: Rate, span_s: tuple[float, float], width_s: float, most_s: float
 ) -> tuple[float, float] | None:
     """Lag and correlation at the peak; None where the peak is low, at the edge or not alone."""
     begin_s, stop_s = span_s
     at_s = np.arange(begin_s, stop_s, GRID_S)
-    reference = _rate(late, at_s, width_s)
+    reference = late(at_s, width_s)
     lags = np.arange(-most_s, most_s + GRID_S / 2, GRID_S)
     reach = round(most_s / GRID_S)
     around_s = np.asarray(begin_s + GRID_S * np.arange(-reach, len(at_s) + reach), dtype=float)
-    other = _rate(early, around_s, width_s)
+    other = early(around_s, width_s)
     known = np.isfinite(reference)
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:
         return None

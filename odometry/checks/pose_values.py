@@ -1,6 +1,7 @@
 """What the numbers of pose.csv show by themselves: frames, rounding, filling, noise."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,10 +9,13 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import headings
+from odometry.checks.undo import times
 from odometry.positions.rounding import rounding_step_m
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
+EQUATOR_M, WEB_MAP_M = 6_378_137.0, 2.004e7  # radius, and half the width of such a map
+LEAST_STRETCH, STRETCHED = 1.15, (0.8, 1.1)  # m for each metre of the treads that is left
 COARSE_M = 0.02
 INTERPOLATED = 0.5  # share of second differences that are nothing
 NOISY_M = 0.15
@@ -26,7 +30,8 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     rows = np.flatnonzero(used)
     positions, stamps_s = pose.stack("x", "y")[rows], pose.stamps_s[rows]
     yield from _frame(evidence, positions)
-    yield from _coarse(stamps_s, positions)
+    new = np.concatenate([[True], (np.diff(positions, axis=0) != 0).any(axis=1)])
+    yield from _coarse(stamps_s[new], positions[new])
     yield from _interpolated(stamps_s, positions)
     yield from _noisy(evidence, stamps_s)
     if evidence.yaw_measured:
@@ -52,6 +57,8 @@ def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
             "Positions are earth-centred (ECEF), not of a local plane",
             "Convert to local metres east and north",
         )
+    elif stretch := _of_web_map(evidence, middle):
+        yield stretch
     elif far > MAP_M:
         level = Level.NOTE
         more = ""
@@ -67,6 +74,29 @@ def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
             "Positions are of a map (UTM or national grid), not local",
             "Subtract the first position; mind that grid north is not true north",
         )
+
+
+def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
+    """Positions of web maps, longer by one over the cosine of the latitude that y says."""
+    along = evidence.metres_per_metre
+    if along is None or not MAP_M < abs(middle_m[1]) < WEB_MAP_M or abs(middle_m[0]) > WEB_MAP_M:
+        return None
+    latitude = 2 * np.arctan(np.exp(middle_m[1] / EQUATOR_M)) - np.pi / 2
+    stretch = float(1 / np.cos(latitude))
+    if stretch < LEAST_STRETCH or not STRETCHED[0] < along / stretch < STRETCHED[1]:
+        return None
+    return replace(
+        _finding(
+            "web_map_positions",
+            f"positions lie around ({middle_m[0]:.6g}, {middle_m[1]:.6g}) m, and the robot moves "
+            f"{along:.3g} m for each m of tread travel",
+            "Positions are of a web map (Web Mercator, EPSG:3857), which is stretched by "
+            f"{stretch:.3f} at {np.degrees(latitude):.1f} degrees of latitude",
+            "Convert longitude and latitude to local metres, or divide x and y by "
+            f"{stretch:.4f} after subtracting the first position",
+        ),
+        mend=times("pose", 1 / stretch, "x", "y"),
+    )
 
 
 def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:

@@ -4,20 +4,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import IntArray
 from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.held_poses import frozen_poses, repeated_poses
 from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
 from odometry.checks.steps import FAR_S, JITTER_S, JUMP_TIMES, SHOWN, moments, rate_of, step_sizes
 from odometry.checks.undo import moved
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import constant_spans, runs_of, within
+from odometry.windows.spans import runs_of, within
 
-FROZEN_S = 1.5
-OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
-REPEATED = 0.3  # share of poses equal to the one before while the treads move
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
@@ -34,59 +32,13 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     travel_m = evidence.travel_m(stamps_s)
-    repeated = list(_repeated(positions, travel_m))
-    frozen = list(_frozen(evidence, stamps_s, positions, travel_m))
+    repeated = list(repeated_poses(positions, travel_m))
+    frozen = list(frozen_poses(evidence, stamps_s, positions, travel_m))
     yield from repeated or frozen
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
     yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
     yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
-
-
-def _frozen(
-    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray
-) -> Iterator[Finding]:
-    period_s = float(np.median(np.diff(stamps_s)))
-    spans = constant_spans(stamps_s, positions, max(FROZEN_S, 3 * period_s))
-    driven_m = np.interp(spans, stamps_s, travel_m)
-    moved_m = driven_m[:, 1] - driven_m[:, 0] if len(spans) else np.empty(0)
-    odd = moved_m > 0.15 * evidence.fastest_m_s * (spans[:, 1] - spans[:, 0])
-    spans, moved_m = spans[odd], moved_m[odd]
-    if not len(spans):
-        return
-    lasts_s = float(np.sum(spans[:, 1] - spans[:, 0]))
-    yield Finding(
-        "frozen_poses",
-        Level.WARNING,
-        f"poses repeat the same position for {lasts_s:.1f} s in {counted(len(spans), 'place')} "
-        f"(first at {evidence.run_time_s(spans[0, 0]):.1f} s) while the treads travel "
-        f"{moved_m.sum():.2f} m",
-        "Poses are frozen: the reference was lost and its last value went on; or the robot was "
-        "stuck while its treads turned",
-        "Leave these poses empty",
-        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans),
-    )
-
-
-def _repeated(positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
-    """Many poses that repeat the one before, again and again: no single loss of the reference."""
-    moving = np.diff(travel_m) > 0.2 * np.quantile(np.diff(travel_m), 0.9)
-    same = (np.diff(positions, axis=0) == 0).all(axis=1)
-    if moving.sum() < 20:
-        return
-    share = float(same[moving].mean())
-    stretches = len(runs_of(same & moving))
-    if share > REPEATED and stretches > OFTEN:
-        longest = int(np.max(np.diff(runs_of(same), axis=1)))
-        yield Finding(
-            "repeated_poses",
-            Level.WARNING,
-            f"{100 * share:.0f} % of the poses repeat the one before while the treads move (up to "
-            f"{counted(longest, 'time')})",
-            "Poses are repeated: the reference is slower than its log, which holds the last value "
-            "(frozen between updates)",
-            "Keep the rows in which the pose is new",
-        )
 
 
 def _outliers(evidence: Evidence) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""What is odd about single stretches and samples of the tread speeds."""
+"""What is odd about the values of the tread speeds: steps, a limit, no motion, one for both."""
 
 from collections.abc import Iterator
 
@@ -6,16 +6,12 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.outliers import spikes
+from odometry.checks.finding import Finding, Level
 from odometry.checks.turn_signs import lasting_turn_rad
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
-DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 STILL_RAD = 0.1  # range of the heading of a stationary robot
-STOP_S = 0.3  # no robot stops and is at full speed again within
-STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
 STRAIGHT, LEAST_TRAVEL, LEAST_WINDOWS = 0.5, 0.3, 8  # windows in which distances are compared
@@ -26,42 +22,15 @@ LEAST_TURN_RAD = 1.0  # range of the heading that equal treads do not explain
 
 
 def treads(evidence: Evidence) -> Iterator[Finding]:
-    """Absurd samples, coarse steps, saturation, lost samples, missing motion."""
-    yield from _absurd(evidence)
+    """Coarse steps, saturation, missing motion."""
     yield from _coarse(evidence)
     yield from _saturated(evidence)
-    yield from _dropped(evidence)
     yield from _idle(evidence)
-
-
-def _absurd(evidence: Evidence) -> Iterator[Finding]:
-    for name in ("v_left", "v_right"):
-        values = evidence.run.odometry[name]
-        rows = np.flatnonzero(spikes(values))
-        rows = rows[np.abs(values[rows]) > evidence.fastest_m_s]
-        if not len(rows):
-            continue
-        worst = rows[np.argmax(np.abs(values[rows]))]
-        travel_m = np.abs(values[rows]) * np.append(np.diff(evidence.stamps_s), 0.0)[rows]
-        yield Finding(
-            "absurd_speed",
-            Level.WARNING,
-            f"{name} jumps out and back in {counted(len(rows), 'sample')}, up to "
-            f"{values[worst]:.4g} m/s (row {evidence.run.odometry.lines[worst]}), where "
-            f"{evidence.fastest_m_s:.3g} m/s is the ordinary fastest; this moves the odometer by "
-            f"{travel_m.sum():.3g} m",
-            "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte, "
-            "a placeholder for what was not measured)",
-            "Remove these rows: the speed before them holds meanwhile",
-            tuple(
-                (evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]
-            ),
-        )
 
 
 def _coarse(evidence: Evidence) -> Iterator[Finding]:
     """Readings that come in large steps, from one to the next and back."""
-    step = min(filter(None, map(_step, evidence.speeds_m_s.T)), default=0.0)
+    step = min(filter(None, map(step_of, evidence.speeds_m_s.T)), default=0.0)
     if step < COARSE / 4 * evidence.fastest_m_s or step == 0:
         return
     much = step > COARSE * evidence.fastest_m_s
@@ -77,7 +46,7 @@ def _coarse(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
-def _step(values: FloatArray) -> float | None:
+def step_of(values: FloatArray) -> float | None:
     """The step of which all changes are multiples; None where there is none, or few changes."""
     changes = np.abs(np.diff(values))
     changes = changes[changes > 1e-9]
@@ -135,32 +104,6 @@ def _travels_as_said(evidence: Evidence, at_top: BoolArray) -> bool:
         return False
     top, other = map(float, map(np.median, groups))
     return abs(top / other - 1) < AS_FAR
-
-
-def _dropped(evidence: Evidence) -> Iterator[Finding]:
-    """Single zeros amid motion."""
-    counts, spans = {}, []
-    for name in ("v_left", "v_right"):
-        values = evidence.run.odometry[name]
-        least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (_step(values) or 0.0))
-        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
-        zero &= np.abs(values[2:]) > least_m_s
-        zero &= np.sign(values[:-2]) == np.sign(values[2:])
-        zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
-        counts[name] = int(zero.sum())
-        spans += [evidence.run_time_s(s) for s in evidence.stamps_s[1:-1][zero]]
-    total = sum(counts.values())
-    if total:
-        share = total / (2 * len(evidence.stamps_s))
-        yield Finding(
-            "dropped_speeds",
-            Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
-            f"tread speeds are zero between two of full speed in {counted(total, 'sample')} "
-            f"(v_left {counts['v_left']}, v_right {counts['v_right']})",
-            "Samples drop out: zeros are written where a message was lost",
-            "Remove these rows: the speed before them holds meanwhile",
-            tuple((span, span) for span in sorted(spans)),
-        )
 
 
 def _extent(positions: FloatArray) -> tuple[float, float]:

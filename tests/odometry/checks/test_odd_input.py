@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.catalogue import CATALOGUE, CONSEQUENCES
+from odometry.checks.catalogue import CATALOGUE
+from odometry.checks.consequences import CONSEQUENCES
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Level
 from odometry.checks.motion import motion_between

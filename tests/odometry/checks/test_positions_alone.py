@@ -140,3 +140,40 @@ def test_turns_that_go_with_nothing_are_not_used():
     noise = np.random.default_rng(0).normal(0, 0.4, 4000)
     run = gyroscope(without_yaw(turning_all_round()), lambda _: noise)
     assert np.isnan(Evidence(run).pose_turn_rad).all()
+
+
+def starts_and_stops(delay_s, hz, sigma_m, seed=0):
+    """A drive of changing speed, with positions of a receiver that are late."""
+    at_s, rng = 0.05 * np.arange(4000), np.random.default_rng(seed)
+    phases = rng.uniform(0, 6, 4)
+    speed = sum(np.sin(at_s / s + p) for s, p in zip((1.5, 3, 5, 8), phases, strict=True))
+    run = drive(np.maximum(0.5 + 0.4 * speed, 0), 0.3 * np.sin(at_s / 4))
+    every = slice(None, None, round(1 / hz / float(np.median(np.diff(run.pose.stamps_s)))))
+    run = replace(run, pose=run.pose.rows(every))
+    noise = rng.normal(scale=sigma_m, size=(2, len(run.pose)))
+    moved = put(run, "pose", x=run.pose["x"] + noise[0], y=run.pose["y"] + noise[1])
+    return without_yaw(put(moved, "pose", t=moved.pose["t"] + delay_s))
+
+
+@pytest.mark.parametrize("gyroscope", [True, False])
+@pytest.mark.parametrize(("delay_s", "word"), [(1.0, "late"), (-0.7, "early"), (2.0, "late")])
+def test_late_positions_are_named_by_their_speed(delay_s, word, gyroscope):
+    run = starts_and_stops(delay_s, 1.0, 0.05)
+    (found,) = check_recording(run if gyroscope else without_gyroscope(run)).at(Level.WARNING)
+    assert (found.name, found.seen.split(" s ")[1].split()[0]) == ("pose_late", word)
+    assert float(found.remedy.split("subtract ")[1].split()[0]) == pytest.approx(delay_s, abs=0.2)
+    assert ("or the robot itself follows later" in found.cause) == (delay_s > 0)
+
+
+@pytest.mark.parametrize("hz", [1.0, 5.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_positions_on_time_are_not_late(hz, seed):
+    report = check_recording(starts_and_stops(0.0, hz, 0.05, seed))
+    assert warnings(starts_and_stops(0.0, hz, 0.05, seed)) == []
+    assert "poses without yaw: headings were not checked against them" in report.skipped
+
+
+def test_where_the_speed_is_constant_delays_are_not_checked():
+    run = without_yaw(drive(np.full(4000, 0.7), np.full(4000, 0.1)))
+    skipped = check_recording(run).skipped
+    assert "poses without yaw: headings and delays were not checked against them" in skipped

@@ -1,0 +1,112 @@
+"""Causes that are undone: what then still differs says whether they were the right ones."""
+
+from collections.abc import Callable, Iterable, Sequence
+
+from odometry.checks.catalogue import CATALOGUE
+from odometry.checks.disagreement import lasting_disagreements, scales_apart
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level, disagreement
+from odometry.checks.undo import Mend, between, in_turn
+from odometry.run import Run
+
+MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
+AROUND_S = 2.0  # of such a moment that is left out
+LEAST_S = 15.0  # of a part between two cuts
+HALF = 0.5  # of the recording, that parts are at least: with more cuts it is compared whole
+MOST_PARTS = 6  # the longest ones are compared
+# Sensors of different times seem to slip, to jump and to be far from the centre; one side of
+# another scale seems to scale the way.
+TRIED_ALONE = frozenset(
+    {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
+    | {"treads_unequal"}
+)
+
+Found = Callable[[Evidence], list[Finding]]
+
+
+def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
+    """A cause that leaves no warning when it alone is undone, and the notes; else all findings.
+
+    Its consequences vanish with it.
+    """
+    warnings = _warnings(found)
+    causes = [cause for cause in warnings if cause.name in TRIED_ALONE]
+    only = _explains_all(evidence, causes, find) if len(warnings) > 1 else None
+    return list(found) if only is None else [only, *_notes(found)]
+
+
+def _explains_all(evidence: Evidence, causes: Sequence[Finding], find: Found) -> Finding | None:
+    """The first cause that leaves no warning when it alone is undone."""
+    for cause in causes:
+        if cause.mend is not None and not _warnings(find(Evidence(cause.mend(evidence.run)))):
+            return cause
+    return None
+
+
+def _notes(found: Iterable[Finding]) -> list[Finding]:
+    return [finding for finding in found if finding.level is Level.NOTE]
+
+
+def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
+    """The findings; causes that leave the sensors apart when they are undone are named no more.
+
+    All of them are undone together: columns and stamps are mended, the recording is cut at jumps,
+    and stretches that other findings name are left out. What stays is compared in absolute terms:
+    it is not enough that it is less than before. Where they fail together, one of them may be
+    the only one: a turn that is reversed seems to be late where the drive repeats itself.
+    """
+    warnings = _warnings(found)
+    causes = [finding for finding in warnings if finding.mend is not None]
+    jumps = [finding for finding in warnings if finding.name in MOMENTS]
+    others = [f for f in warnings if f not in causes and f not in jumps]
+    spans = tuple(span for finding in others for span in finding.spans_s)
+    if not causes and not jumps:
+        return list(found)
+    mends: list[Mend] = [finding.mend for finding in causes if finding.mend is not None]
+    cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
+    parts = _parts(in_turn(*mends)(evidence.run), cuts, spans)
+    left = _left(parts)
+    if cuts and (scales := scales_apart(Evidence(in_turn(*mends)(evidence.run), spans))):
+        left = list(dict.fromkeys([*left, scales]))  # jumps are outliers of it, parts may be short
+    only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
+    if only is not None:
+        return [only, *_notes(found)]
+    return _unnamed(found, [*causes, *jumps], left) if left else list(found)
+
+
+def _warnings(found: Iterable[Finding]) -> list[Finding]:
+    return [finding for finding in found if finding.level is Level.WARNING]
+
+
+def _parts(
+    run: Run, cuts_s: Sequence[float], left_out_s: tuple[tuple[float, float], ...]
+) -> list[Evidence]:
+    """What is said between cuts; what is left out is in run time of the whole."""
+    if not cuts_s:
+        return [Evidence(run, left_out_s)]
+    first_s, last_s = run.odometry.stamps_s[[0, -1]]
+    begins = [first_s, *(run.began_s + cut_s + AROUND_S for cut_s in cuts_s)]
+    ends = [*(run.began_s + cut_s - AROUND_S for cut_s in cuts_s), last_s]
+    long = [(b, e) for b, e in zip(begins, ends, strict=True) if e - b > LEAST_S]
+    parts = []
+    for begin_s, end_s in sorted(long, key=lambda part: part[0] - part[1])[:MOST_PARTS]:
+        part = between(run, begin_s, end_s)
+        if len(part.odometry) > 2:
+            back_s = part.odometry.stamps_s[0] - first_s
+            moved = tuple((b - back_s, e - back_s) for b, e in left_out_s)
+            parts.append(Evidence(part, moved))
+    compared_s = sum(part.duration_s for part in parts)
+    return parts if compared_s > HALF * (last_s - first_s) else [Evidence(run, left_out_s)]
+
+
+def _left(parts: Sequence[Evidence]) -> list[str]:
+    found = (words for part in parts for words in lasting_disagreements(part))
+    return list(dict.fromkeys(found))
+
+
+def _unnamed(found: Sequence[Finding], judged: Sequence[Finding], left: list[str]) -> list[Finding]:
+    """The findings, some of them joined in one disagreement, after those that are facts."""
+    seen = "; ".join(finding.seen for finding in judged)
+    best = ", ".join(dict.fromkeys(CATALOGUE[finding.name] for finding in judged))
+    words = f"{seen}; with the likeliest cause ({best}) undone, {'; '.join(left)}"
+    return [*(finding for finding in found if finding not in judged), disagreement(words)]

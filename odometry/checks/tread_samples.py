@@ -1,0 +1,100 @@
+"""Single samples of the tread speeds that are none: outliers, zeros and placeholders."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.outliers import spikes
+from odometry.checks.treads import step_of
+
+DROPPED = 0.001  # share of samples that are lost, from which it is a warning
+STOP_S = 0.3  # no robot stops and is at full speed again within
+STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
+LEAST_SAME, SAME = 8, 0.5  # rows of one value, and their share of all that are alone
+
+
+def tread_samples(evidence: Evidence) -> Iterator[Finding]:
+    """Absurd samples, zeros where one was lost, and values that stand for nothing."""
+    yield from _absurd(evidence)
+    yield from _dropped(evidence)
+    yield from _placeholders(evidence)
+
+
+def _absurd(evidence: Evidence) -> Iterator[Finding]:
+    for name in ("v_left", "v_right"):
+        values = evidence.run.odometry[name]
+        rows = np.flatnonzero(spikes(values))
+        rows = rows[np.abs(values[rows]) > evidence.fastest_m_s]
+        if not len(rows):
+            continue
+        worst = rows[np.argmax(np.abs(values[rows]))]
+        travel_m = np.abs(values[rows]) * np.append(np.diff(evidence.stamps_s), 0.0)[rows]
+        yield Finding(
+            "absurd_speed",
+            Level.WARNING,
+            f"{name} jumps out and back in {counted(len(rows), 'sample')}, up to "
+            f"{values[worst]:.4g} m/s (row {evidence.run.odometry.lines[worst]}), where "
+            f"{evidence.fastest_m_s:.3g} m/s is the ordinary fastest; this moves the odometer by "
+            f"{travel_m.sum():.3g} m",
+            "Single corrupt samples (an outlier or spike: a counter that overflowed, a lost byte, "
+            "a placeholder for what was not measured)",
+            "Remove these rows: the speed before them holds meanwhile",
+            tuple(
+                (evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]
+            ),
+        )
+
+
+def _dropped(evidence: Evidence) -> Iterator[Finding]:
+    """Single zeros amid motion."""
+    counts, spans = {}, []
+    for name in ("v_left", "v_right"):
+        values = evidence.run.odometry[name]
+        least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
+        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
+        zero &= np.abs(values[2:]) > least_m_s
+        zero &= np.sign(values[:-2]) == np.sign(values[2:])
+        zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
+        counts[name] = int(zero.sum())
+        spans += [evidence.run_time_s(s) for s in evidence.stamps_s[1:-1][zero]]
+    total = sum(counts.values())
+    if total:
+        share = total / (2 * len(evidence.stamps_s))
+        yield Finding(
+            "dropped_speeds",
+            Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
+            f"tread speeds are zero between two of full speed in {counted(total, 'sample')} "
+            f"(v_left {counts['v_left']}, v_right {counts['v_right']})",
+            "Samples drop out: zeros are written where a message was lost",
+            "Remove these rows: the speed before them holds meanwhile",
+            tuple((span, span) for span in sorted(spans)),
+        )
+
+
+def _placeholders(evidence: Evidence) -> Iterator[Finding]:
+    """One exact value, not zero, that comes for single rows amid others far from it."""
+    stamps_s, seen, spans = evidence.stamps_s, [], []
+    for name in ("v_left", "v_right"):
+        values = evidence.run.odometry[name]
+        least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
+        before, here, after = values[:-2], values[1:-1], values[2:]
+        away = np.minimum(np.abs(here - before), np.abs(here - after))
+        alone = (away > least_m_s) & (np.abs(after - before) < away / 2) & (np.abs(here) > 1e-9)
+        found, counts = np.unique(here[alone], return_counts=True)
+        if not len(found) or counts.max() < max(LEAST_SAME, SAME * alone.sum()):
+            continue
+        value = found[np.argmax(counts)]
+        rows = np.flatnonzero(alone & (here == value)) + 1
+        seen.append(f"{name} is {value:.6g} m/s in {counted(len(rows), 'row')}")
+        spans += [(evidence.run_time_s(s),) * 2 for s in stamps_s[rows]]
+    if seen:
+        yield Finding(
+            "placeholder_speeds",
+            Level.WARNING,
+            f"{' and '.join(seen)}, each time alone amid other speeds",
+            "A placeholder is written where nothing was measured",
+            "Remove these rows: the speed before them holds meanwhile",
+            tuple(sorted(spans)),
+        )

@@ -1,0 +1,124 @@
+"""Mixed rows, stamps of another pace, stretched maps and held poses: their cause, not another."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.table import Table
+from tests.odometry.checks.faulty import put, treads
+from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
+from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+from tests.odometry.checks.test_positions_alone import without_yaw
+
+AT_S = 0.05 * np.arange(4000)
+
+
+def uneven(seed=0):
+    """A drive whose speed and turns change all the time."""
+    rng = np.random.default_rng(seed)
+    lengths_s, phases = rng.uniform(2, 9, 8), rng.uniform(0, 6, 8)
+    waves = [np.sin(AT_S / s + p) for s, p in zip(lengths_s, phases, strict=True)]
+    return drive(0.6 + 0.2 * sum(waves[:4]), 0.3 * sum(waves[4:]), seed=seed)
+
+
+def at_pace(run, factor):
+    def slower(table):
+        return table and replace(table, columns={**table.columns, "t": factor * table["t"]})
+
+    names = ("odometry", "pose", "imu")
+    return replace(run, **{name: slower(getattr(run, name)) for name in names})
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0, 1 / 3])
+def test_stamps_of_a_replay(factor):
+    (found,) = check_recording(at_pace(uneven(), factor)).at(Level.WARNING)
+    assert found.name == "stamp_pace"
+    said = float(found.cause.removeprefix("Stamps run ").split()[0])
+    assert said == pytest.approx(1 / factor, rel=0.03)
+
+
+def test_stamps_in_minutes():
+    (found,) = check_recording(at_pace(uneven(), 1 / 60)).at(Level.WARNING)
+    assert (found.name, "minutes" in found.cause) == ("stamp_pace", True)
+
+
+def test_without_a_gyroscope_a_pace_is_not_told_from_a_scale():
+    assert "stamp_pace" not in warnings(without_gyroscope(at_pace(uneven(), 0.5)))
+
+
+def interleaved_with(run, other, period_s=0.0):
+    """Rows of another source between the rows of a run, all of them or one in so many seconds."""
+    rows = other.odometry.rows(slice(None, None, max(round(period_s / 0.05), 1)))
+    names = [name for name in run.odometry.columns if name in rows.columns]
+    shifted = {name: rows[name] + 0.0123 * (name == "t") for name in names}
+    joined = {n: np.append(run.odometry[n], shifted[n]) for n in names}
+    order = np.argsort(joined["t"])
+    table = Table(
+        run.odometry.file, {n: v[order] for n, v in joined.items()}, np.arange(len(order)) + 2
+    )
+    return replace(run, odometry=table)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("period_s", [0.0, 0.1])
+def test_rows_of_two_sources(seed, period_s):
+    mixed = interleaved_with(uneven(seed), uneven(seed + 10), period_s)
+    assert warnings(mixed) == ["interleaved_rows"]
+
+
+@pytest.mark.parametrize("sigma_m_s", [0.05, 0.2])
+def test_noise_of_speeds_is_no_second_source(sigma_m_s):
+    rng = np.random.default_rng(1)
+    noisy = treads(
+        uneven(), lambda *sides: tuple(v + rng.normal(0, sigma_m_s, len(v)) for v in sides)
+    )
+    assert "interleaved_rows" not in warnings(noisy)
+
+
+@pytest.mark.parametrize("step_m_s", [0.05, 0.2, 0.4])
+def test_coarse_speeds_are_no_second_source(step_m_s):
+    rng = np.random.default_rng(2)
+
+    def coarse(speeds):
+        return step_m_s * np.floor(speeds / step_m_s + rng.random(len(speeds)))
+
+    found = warnings(treads(uneven(), lambda left, right: (coarse(left), coarse(right))))
+    assert "interleaved_rows" not in found
+    assert "placeholder_speeds" not in found
+
+
+@pytest.mark.parametrize("yaw_known", [True, False])
+@pytest.mark.parametrize("latitude_deg", [46.7, -35.0, 60.0])
+def test_positions_of_a_web_map(yaw_known, latitude_deg):
+    run, phi = uneven(), np.radians(latitude_deg)
+    north_m = 6_378_137.0 * np.log(np.tan(np.pi / 4 + phi / 2))
+    x, y = (run.pose[name] / np.cos(phi) + at for name, at in (("x", 8e5), ("y", north_m)))
+    run = put(run, "pose", x=x, y=y)
+    assert warnings(run if yaw_known else without_yaw(run)) == ["web_map_positions"]
+
+
+def test_a_national_grid_is_no_web_map():
+    run = turning_all_round()
+    far = put(run, "pose", x=run.pose["x"] + 331_230.0, y=run.pose["y"] + 5.18e6)
+    assert [f.name for f in check_recording(far).findings] == ["map_frame"]
+
+
+def test_positions_that_are_held_beside_a_fresh_yaw_are_not_rounded():
+    run = uneven()
+    held = (np.arange(len(run.pose)) // 10) * 10
+    assert warnings(put(run, "pose", x=run.pose["x"][held], y=run.pose["y"][held])) == [
+        "repeated_poses"
+    ]
+
+
+@pytest.mark.parametrize("speed_m_s", [0.6, 0.1])
+def test_poses_that_stay_for_the_other_half_are_frozen(speed_m_s):
+    slow = np.where(AT_S < 100, 0.8, speed_m_s)
+    run = without_yaw(drive(slow, 0.2 * np.sin(AT_S / 3)))
+    half = len(run.pose) // 2
+    rows = np.minimum(np.arange(len(run.pose)), half)
+    found = warnings(put(run, "pose", x=run.pose["x"][rows], y=run.pose["y"][rows]))
+    assert found == ["frozen_poses"]
