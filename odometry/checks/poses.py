@@ -52,7 +52,7 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     yield Finding(
         "pose_outliers",
         Level.WARNING if share > OUTLIERS or len(found) > 5 else Level.NOTE,
-        f"{counted(len(found), 'pose')} ({100 * share:.2g} %) up to {away.max():.3g} m away from "
+        f"{counted(len(found), 'pose')} ({100 * share:.3g} %) up to {away.max():.3g} m away from "
         "the neighbours, and back again",
         "Outliers of the reference (multipath, a wrong match)",
         "Leave these poses empty; the filter's gate refuses them and fits weigh them down",

@@ -190,7 +190,7 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
                 "repeated_stamps",
                 Level.WARNING if share > 0.2 else Level.NOTE,
                 f"{name} repeats the stamp of the row before in {counted(len(dropped), 'row')} "
-                f"({100 * share:.2g} %; row {first}), and they were dropped",
+                f"({100 * share:.3g} %; row {first}), and they were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
                 else "Stamps have too few digits, or two recordings were merged",

@@ -42,6 +42,11 @@ CAUSES = (
         "Write the names of the columns in the first line",
     ),
     (
+        r"pose\.csv: the column 'yaw' is missing",
+        "The heading was not measured, or has another name",
+        "Write an empty column yaw where it was not measured: positions alone are used then",
+    ),
+    (
         r"the column '.*' is missing",
         "The columns have other names than the format gives them, or the header is missing",
         "Rename the columns: t, v_left, v_right in odometry.csv; t, x, y, yaw in pose.csv",

@@ -1,5 +1,6 @@
 """Read TOML and JSON of bounded size, depth and numbers."""
 
+import codecs
 import io
 import json
 import re
@@ -28,6 +29,7 @@ def read_toml(file: Path, error: type[OdometryError]) -> dict[str, Any]:
         TOML, nested deeper than DEPTH, or holds an integer of more than 64 bits.
     """
     data = read_bytes(file, error, TOML_BYTES, "settings have a few thousand")
+    data = data.removeprefix(codecs.BOM_UTF8)  # which editors of Windows write
     if DOTTED_KEY.search(data):
         raise error(f"{file}: a key of more than {DEPTH} parts, expected fewer")
     try:

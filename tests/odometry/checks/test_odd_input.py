@@ -193,3 +193,11 @@ def test_steps_are_between_medians_of_both_sides():
         expected = np.hypot(*(np.median(after, axis=0) - np.median(before, axis=0)))
         assert found[i] == pytest.approx(expected, rel=1e-12)
     assert np.isnan(found[[0, -1]]).all()
+
+
+def test_a_missing_yaw_column_may_be_empty(tmp_path):
+    (tmp_path / "run.toml").write_text("[robot]\ntrack_width = 0.5\n")
+    (tmp_path / "odometry.csv").write_text("t,v_left,v_right\n0,1,1\n1,1,1\n")
+    (tmp_path / "pose.csv").write_text("t,x,y\n0,1,1\n1,1,1\n")
+    (refused,) = check_recording(tmp_path).findings
+    assert "an empty column yaw" in refused.remedy

@@ -126,3 +126,9 @@ def test_paths_that_lead_out(tmp_path):
     (tmp_path / "way").symlink_to(folder)
     assert not leads_out(tmp_path / "way", "images/a.png")
     assert leads_out(tmp_path / "way", "../outside/a.png")
+
+
+def test_a_mark_of_the_byte_order_is_no_toml_but_is_read(tmp_path):
+    file = tmp_path / "run.toml"
+    file.write_bytes("a = 1\n".encode("utf-8-sig"))
+    assert read_toml(file, RunFolderError) == {"a": 1}
