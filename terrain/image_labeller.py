@@ -107,13 +107,14 @@ class ImageLabeller:
         self._region = region
         self._folder = folder
         self._has_answered = False
+        self._before: ByteImage | None = None
 
     def label(self, frame: Frame, estimate: Estimate) -> ImageLabel:
         """Classify the region ahead in the image of a frame.
 
-        An image that cannot be read, a grey one where the classifier needs colour, or one of
-        another size among good ones, is an image label without a name, so that one bad file does
-        not end a long run.
+        An image that cannot be read, a grey one where the classifier needs colour, one of another
+        size among good ones, or one that equals the one before, is an image label without a name,
+        so that one bad file does not end a long run.
 
         Raises
         ------
@@ -137,16 +138,9 @@ class ImageLabeller:
         )
         if isinstance(region, NoRegion):
             return ImageLabel(frame.stamp_s, name, reason=region.reason)
-        try:
-            image = read_image(frame.image) if isinstance(frame.image, Path) else frame.image
-        except ImageError:
-            return ImageLabel(frame.stamp_s, name, region=region, reason="the image cannot be read")
-        if not self._is_of_size(image, name or f"the image of {frame.stamp_s} s"):
-            reason = "the image is not of the camera's size"
-            return ImageLabel(frame.stamp_s, name, region=region, reason=reason)
-        if self.classifier.colour_ and image.ndim != 3:
-            reason = "the image is grey, the model was trained with colour"
-            return ImageLabel(frame.stamp_s, name, region=region, reason=reason)
+        image = self._read(frame.image, name or f"the image of {frame.stamp_s} s")
+        if isinstance(image, str):
+            return ImageLabel(frame.stamp_s, name, region=region, reason=image)
         views = [self._view(image, r) for r in region.rectangles]
         answers = self.classifier.classify(views)
         self.seen.add(views)
@@ -159,6 +153,25 @@ class ImageLabeller:
         if not isinstance(image, Path):
             return ""
         return image.relative_to(self._folder).as_posix() if self._folder else image.as_posix()
+
+    def _read(self, image: Path | ByteImage, name: str) -> ByteImage | str:
+        """The image, or why it is not classified."""
+        try:
+            image = read_image(image) if isinstance(image, Path) else image
+        except ImageError:
+            return "the image cannot be read"
+        if self._repeats(image):
+            return "the image is the one before"
+        if not self._is_of_size(image, name):
+            return "the image is not of the camera's size"
+        if self.classifier.colour_ and image.ndim != 3:
+            return "the image is grey, the model was trained with colour"
+        return image
+
+    def _repeats(self, image: ByteImage) -> bool:
+        """Whether an image equals the one before: a camera that is frozen shows nothing new."""
+        before, self._before = self._before, image
+        return before is not None and np.array_equal(before, image)
 
     def _is_of_size(self, image: ByteImage, name: str) -> bool:
         """Whether an image is of the camera's size; if the first is not, the camera is wrong."""

@@ -13,7 +13,8 @@ NEAR = 0.15  # of that distance, to one of the rows before it
 REACH = 4  # rows before: of a source that is so many times slower
 OFTEN = 0.2  # share of the rows that are far: single zeros and outliers are fewer
 MOST = 0.6  # of these, that return to a row before; of white noise a third does
-SIDES = 0.2  # share of the rows that each source has at least, within what is far
+SIDES = 0.2  # spread of both ends of the leaps, as a share of a leap
+OTHERS = 0.05  # share of the rows that leap, and not to or from one value (a placeholder)
 STEPS = 6.0  # of coarse readings: these go to and fro between neighbouring values
 
 
@@ -48,10 +49,13 @@ def _leaps(values: FloatArray, least: float) -> tuple[BoolArray, BoolArray]:
 
 
 def _two_courses(values: FloatArray, leaps: BoolArray) -> bool:
-    """Whether what leaps varies on both sides: zeros amid motion are one value."""
+    """Whether what leaps varies on both sides, apart from one value: zeros amid motion are one."""
     rows = np.flatnonzero(leaps) + REACH
-    low = np.minimum(values[rows], values[rows - 1])
-    high = np.maximum(values[rows], values[rows - 1])
+    pairs = np.sort(np.stack([values[rows], values[rows - 1]]), axis=0)
+    found, counts = np.unique(pairs, return_counts=True)
+    low, high = pairs[:, (pairs != found[np.argmax(counts)]).all(axis=0)]
+    if len(low) < OTHERS * len(leaps):
+        return False
     return bool(min(_spread(low), _spread(high)) > SIDES * np.median(high - low))
 
 

@@ -10,12 +10,14 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import headings
 from odometry.checks.undo import times
+from odometry.checks.unit_findings import beyond_treads
 from odometry.positions.rounding import rounding_step_m
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
 EQUATOR_M, WEB_MAP_M = 6_378_137.0, 2.004e7  # radius, and half the width of such a map
-LEAST_STRETCH, STRETCHED = 1.15, (0.8, 1.1)  # m for each metre of the treads that is left
+FARTHEST = 1.1  # m for each metre of the treads: no robot goes farther
+STRETCHED = (0.75, 1.1)  # the same, of positions whose stretch is undone
 COARSE_M = 0.02
 INTERPOLATED = 0.5  # share of second differences that are nothing
 NOISY_M = 0.15
@@ -78,12 +80,12 @@ def _frame(evidence: Evidence, positions: FloatArray) -> Iterator[Finding]:
 
 def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
     """Positions of web maps, longer by one over the cosine of the latitude that y says."""
-    along = evidence.metres_per_metre
+    along = beyond_treads(evidence) or evidence.metres_per_metre
     if along is None or not MAP_M < abs(middle_m[1]) < WEB_MAP_M or abs(middle_m[0]) > WEB_MAP_M:
         return None
     latitude = 2 * np.arctan(np.exp(middle_m[1] / EQUATOR_M)) - np.pi / 2
     stretch = float(1 / np.cos(latitude))
-    if stretch < LEAST_STRETCH or not STRETCHED[0] < along / stretch < STRETCHED[1]:
+    if along < FARTHEST or not STRETCHED[0] < along / stretch < STRETCHED[1]:
         return None
     return replace(
         _finding(

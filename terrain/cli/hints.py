@@ -17,6 +17,7 @@ from terrain.run_result import RunResult
 
 MANY_REFUSED = 0.1
 FEW_EVENTS = 10
+FEWEST_IMAGES, MOSTLY_UNKNOWN = 20, 0.5
 REFUSED_POSES = "refused_poses"  # kind of an event that says the same
 
 
@@ -58,7 +59,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         empty = no_ground_note([image_label.reason for image_label in result.watcher.image_labels])
         if empty is not None:
             found.append(empty)
-        found += _blind(result.watcher.image_labels)
+        found += _blind(result.watcher.image_labels) or _few_names(result.watcher.image_labels)
         if named is None and len(known) > 1:
             found += _start(result.initial_terrain, result.run.terrain, result.watcher.image_labels)
     poses = int((~np.isnan(result.replay.innovations_squared)).sum())
@@ -110,6 +111,20 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         f"vision named no terrain in any of {len(image_labels)} images: {words}; the terrain "
         "in force never changed. Try terrain-odometry camera RUN --model MODEL --out DIR: it shows "
         "what the camera sees and suggests a pitch"
+    ]
+
+
+def _few_names(image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say that the terrain in force rests on few images where most of them are unknown."""
+    reasons = [one.reason or "far from all" for one in image_labels if one.label == UNKNOWN]
+    classified = sum(one.label != "" for one in image_labels)
+    if classified < FEWEST_IMAGES or len(reasons) < MOSTLY_UNKNOWN * classified:
+        return []
+    (reason, count) = Counter(reasons).most_common(1)[0]
+    return [
+        f"{len(reasons)} of {classified} classified images are unknown (most often: {reason}, "
+        f"{count}), so that the terrain in force rests on the others, some of them far behind. "
+        "Compare the path with that of --no-vision"
     ]
 
 

@@ -78,6 +78,15 @@ def test_noise_of_speeds_is_no_second_source(sigma_m_s):
     assert "interleaved_rows" not in warnings(noisy)
 
 
+@pytest.mark.parametrize("share", [0.02, 0.15, 0.3])
+def test_zeros_amid_motion_to_both_sides_are_no_second_source(share):
+    rng = np.random.default_rng(3)
+    both_ways = drive(0.8 * np.sin(AT_S / 5), 0.3 * np.sin(AT_S / 3))
+    kept = rng.random(len(AT_S)) > share
+    run = treads(both_ways, lambda *sides: tuple(v * kept for v in sides))
+    assert "interleaved_rows" not in warnings(run)
+
+
 @pytest.mark.parametrize("step_m_s", [0.05, 0.2, 0.4])
 def test_coarse_speeds_are_no_second_source(step_m_s):
     rng = np.random.default_rng(2)
@@ -100,9 +109,10 @@ def test_positions_of_a_web_map(yaw_known, latitude_deg):
     assert warnings(run if yaw_known else without_yaw(run)) == ["web_map_positions"]
 
 
-def test_a_national_grid_is_no_web_map():
+@pytest.mark.parametrize(("east_m", "north_m"), [(331_230.0, 5.18e6), (467_084.0, 4.23e6)])
+def test_a_national_grid_is_no_web_map(east_m, north_m):
     run = turning_all_round()
-    far = put(run, "pose", x=run.pose["x"] + 331_230.0, y=run.pose["y"] + 5.18e6)
+    far = put(run, "pose", x=run.pose["x"] + east_m, y=run.pose["y"] + north_m)
     assert [f.name for f in check_recording(far).findings] == ["map_frame"]
 
 

@@ -59,6 +59,14 @@ def test_images_that_show_no_ground_are_counted():
     assert hint.startswith("2 of 3 images show no ground and are unknown: smooth and blue")
 
 
+def test_where_most_images_are_unknown_the_path_is_to_be_compared():
+    of = starting(["grass"] * 12 + [""] * 9 + ["unknown"] * 13)
+    (hint,) = [one for one in hints(of, vision=True) if "--no-vision" in one]
+    assert hint.startswith("13 of 25 classified images are unknown (most often: ")
+    fewer = starting(["grass"] * 14 + ["unknown"] * 13)
+    assert not any("--no-vision" in one for one in hints(fewer, vision=True))
+
+
 def test_a_terrain_without_a_table_is_named():
     (hint,) = hints(result(initial="gravle", images=False), vision=True)
     assert "'gravle' has no table" in hint

@@ -14,6 +14,13 @@ from terrain.watcher import TerrainWatcher
 from tests.terrain.watcher.watched import ByBrightness
 
 
+def encoded(image, number):
+    """PNG of an image whose first pixel is its own: a camera shows no two that are equal."""
+    marked = image.copy()
+    marked.flat[0] = number
+    return cv2.imencode(".png", marked)[1].tobytes()
+
+
 @pytest.fixture
 def watch(tmp_path, world):
     """A watcher over a run whose images, one a second, are given; and its classifier."""
@@ -30,9 +37,7 @@ def watch(tmp_path, world):
         rows = ["t,file"]
         for k, image in enumerate(images):
             file = folder / f"{k}.png"
-            file.write_bytes(
-                image if isinstance(image, bytes) else cv2.imencode(".png", image)[1].tobytes()
-            )
+            file.write_bytes(image if isinstance(image, bytes) else encoded(image, k))
             rows.append(f"{k + 0.4},{file.name}")
         (folder / "images.csv").write_text("\n".join(rows) + "\n")
         run = Run.read(folder)

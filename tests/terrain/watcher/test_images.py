@@ -46,6 +46,15 @@ def test_a_grey_image_among_coloured_ones_is_a_row_and_the_run_goes_on(watch):
     assert watched.watcher.image_labels[2].reason == reason
 
 
+def test_an_image_that_equals_the_one_before_shows_nothing_new(watch):
+    frozen = cv2.imencode(".png", BRIGHT)[1].tobytes()
+    watched = watch([DARK, frozen, frozen, frozen, DARK])
+    drive(watched)
+    labels = watched.watcher.image_labels
+    assert [one.label for one in labels] == ["mud", "snow", "", "", "mud"]
+    assert labels[3].reason == "the image is the one before"
+
+
 def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
     """A left turn of 0.4 m radius: at every look-ahead a corner of the footprint is outside."""
     watched = watch([BRIGHT])
