@@ -110,6 +110,6 @@ CATALOGUE: dict[str, str] = {
     "attitude_sign": "roll or pitch against gravity",
     "attitude_unit": "roll or pitch too small",
     "attitude_swapped": "roll and pitch exchanged",
-    "imu_unit": "accelerations in g, or without gravity",
+    "imu_unit": "accelerations in g, without gravity, or of the opposite sign",
     "imu_mount": "an IMU upside down or on its side",
 }

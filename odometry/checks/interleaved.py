@@ -15,6 +15,7 @@ OFTEN = 0.2  # share of the rows that are far: single zeros and outliers are few
 MOST = 0.6  # of these, that return to a row before; of white noise a third does
 SIDES = 0.2  # spread of both ends of the leaps, as a share of a leap
 OTHERS = 0.05  # share of the rows that leap, and not to or from one value (a placeholder)
+FINE = 1e-3  # of the fastest speed, within which two values are one level
 STEPS = 6.0  # of coarse readings: these go to and fro between neighbouring values
 
 
@@ -27,7 +28,8 @@ def interleaved(evidence: Evidence) -> Iterator[Finding]:
         values = np.asarray(odometry[name])
         if not np.isfinite(values).all():
             continue
-        leaps, back = _leaps(values, max(FAR * fastest_m_s, STEPS * _least_step(values)))
+        least = max(FAR * fastest_m_s, STEPS * _least_step(values, FINE * fastest_m_s))
+        leaps, back = _leaps(values, least)
         if leaps.mean() > OFTEN and back[leaps].mean() > MOST and _two_courses(values, leaps):
             yield Finding(
                 "interleaved_rows",
@@ -63,7 +65,7 @@ def _spread(values: FloatArray) -> float:
     return float(np.diff(np.quantile(values, [0.1, 0.9]))[0])
 
 
-def _least_step(values: FloatArray) -> float:
-    """The step to which values were rounded: the usual smallest distance of two of them."""
-    steps = np.diff(np.unique(values))
+def _least_step(values: FloatArray, fine: float) -> float:
+    """The step to which values were rounded: the usual distance of two neighbouring levels."""
+    steps = fine * np.diff(np.unique(np.round(values / fine)))
     return float(np.median(steps)) if len(steps) else 0.0

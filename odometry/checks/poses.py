@@ -148,7 +148,9 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     if by_gyroscope is None or by_gyroscope.correlation < 0.9:
         return
-    stamps_s = np.clip(pose.stamps_s[rows], evidence.stamps_s[0], evidence.stamps_s[-1])
+    of_rate_s = evidence.yaw_rate[0]
+    rows = rows[within(pose.stamps_s[rows], np.array([[of_rate_s[0], of_rate_s[-1]]]))]
+    stamps_s = pose.stamps_s[rows]
     yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
     heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
     known = np.isfinite(yaw) & np.isfinite(heading)

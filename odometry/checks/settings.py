@@ -8,6 +8,7 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.stamps import tables_of
+from odometry.checks.turn_signs import Sense, gyroscope_sense
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
 ACCEL = ("accel_x", "accel_y", "accel_z")
@@ -131,6 +132,14 @@ def _gravity(evidence: Evidence) -> Iterator[Finding]:
         )
     elif not 8.0 < size < 12.0:
         yield _imu("imu_unit", seen, "Accelerations are in another unit", "Convert them to m/s2")
+    elif z < -0.7 * size and not stated and _turns_as_treads(evidence):
+        yield _imu(
+            "imu_unit",
+            f"{seen}, and gyro_z of imu.csv turns as the treads do",
+            "Accelerations have the opposite sign (a driver that gives gravity, not its reaction); "
+            "the gyroscope is right",
+            "Negate the accelerations alone",
+        )
     elif z < -0.7 * size and not stated:
         yield _imu(
             "imu_mount",
@@ -147,6 +156,12 @@ def _gravity(evidence: Evidence) -> Iterator[Finding]:
             "yaw rate",
             "State its attitude in [sensors] imu",
         )
+
+
+def _turns_as_treads(evidence: Evidence) -> bool:
+    """Whether the yaw rate of imu.csv has the sign of the treads' turns."""
+    of_imu = evidence.yaw_rate is not None and evidence.gyroscope_file == "imu.csv"
+    return of_imu and gyroscope_sense(evidence) is Sense.AGREES
 
 
 def _imu(name: str, seen: str, cause: str, remedy: str) -> Finding:

@@ -10,6 +10,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.checks.turn_signs import lasting_turn_rad
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
+DIGITS = 1e-5  # of the fastest speed: less are last digits of ticks over uneven stamps
 LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
 STILL_RAD = 0.1  # range of the heading of a stationary robot
 CHANGING = 0.005
@@ -49,7 +50,7 @@ def _coarse(evidence: Evidence) -> Iterator[Finding]:
 def step_of(values: FloatArray) -> float | None:
     """The step of which all changes are multiples; None where there is none, or few changes."""
     changes = np.abs(np.diff(values))
-    changes = changes[changes > 1e-9]
+    changes = changes[changes > DIGITS * np.abs(values).max(initial=0.0)]
     if len(changes) < max(LEAST_CHANGES, CHANGING * len(values)):
         return None
     step = float(np.quantile(changes, 0.02))

@@ -142,11 +142,13 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     from terrain.new_terrain import contradiction_lines
     from terrain.result_table import image_label_counts
     from terrain.results import write_run
+    from terrain.sets_against_poses import sentences, sets_against_poses
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)
     result = options.replay(recording, show_progress=True)
-    for hint in hints(result, vision=options.wants_images, named=options.terrain):
+    noticed = hints(result, vision=options.wants_images, named=options.terrain)
+    for hint in [*noticed, *sentences(sets_against_poses(result))]:
         click.echo(f"Note: {hint}", err=True)
     write_run(result, output, checks_made())
     print_errors({result.run.name: result})

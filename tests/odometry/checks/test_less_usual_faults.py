@@ -99,6 +99,20 @@ def test_coarse_speeds_are_no_second_source(step_m_s):
     assert "placeholder_speeds" not in found
 
 
+@pytest.mark.parametrize("tick_m", [0.005, 0.01, 0.02])
+def test_ticks_that_are_differenced_are_no_second_source(tick_m):
+    """Of a few levels that differ in their last digits, as stamps of arrival have them."""
+    rng = np.random.default_rng(4)
+
+    def differenced(speeds):
+        ticks = np.floor(np.cumsum(speeds * 0.05) / tick_m)
+        fuzz = 1 + 1e-6 * rng.normal(size=len(speeds))
+        return np.diff(ticks, prepend=0.0) * tick_m / 0.05 * fuzz
+
+    found = warnings(treads(uneven(), lambda *sides: tuple(differenced(v) for v in sides)))
+    assert "interleaved_rows" not in found
+
+
 @pytest.mark.parametrize("yaw_known", [True, False])
 @pytest.mark.parametrize("latitude_deg", [46.7, -35.0, 60.0])
 def test_positions_of_a_web_map(yaw_known, latitude_deg):
@@ -132,3 +146,33 @@ def test_poses_that_stay_for_the_other_half_are_frozen(speed_m_s):
     rows = np.minimum(np.arange(len(run.pose)), half)
     found = warnings(put(run, "pose", x=run.pose["x"][rows], y=run.pose["y"][rows]))
     assert found == ["frozen_poses"]
+
+
+def test_poses_after_the_end_of_odometry_do_not_jump():
+    run = uneven()
+    cut = replace(run, odometry=run.odometry.rows(slice(0, 2500)))
+    assert "yaw_jumps" not in warnings(cut)
+
+
+def test_ticks_whose_last_digits_differ_are_coarse():
+    rng = np.random.default_rng(5)
+
+    def differenced(speeds):
+        ticks = np.diff(np.floor(np.cumsum(speeds * 0.05) / 0.02), prepend=0.0)
+        return ticks * 0.4 * (1 + 1e-7 * rng.normal(size=len(speeds)))
+
+    found = warnings(treads(uneven(), lambda *sides: tuple(differenced(v) for v in sides)))
+    assert found == ["coarse_speeds"]
+
+
+@pytest.mark.parametrize(("sense", "name"), [(1, "imu_unit"), (-1, "imu_mount")])
+def test_gravity_of_the_other_sign_says_nothing_of_a_gyroscope_that_is_right(sense, name):
+    run = uneven()
+    rate = sense * run.odometry["gyro_z"]
+    t = run.odometry.stamps_s
+    columns = {"t": t, "gyro_z": rate, "accel_z": np.full(len(t), -9.81)}
+    columns |= {axis: np.zeros(len(t)) for axis in ("accel_x", "accel_y")}
+    imu = Table(run.odometry.file, columns, run.odometry.lines)
+    kept = {n: c for n, c in run.odometry.columns.items() if n != "gyro_z"}
+    run = replace(run, imu=imu, odometry=replace(run.odometry, columns=kept))
+    assert warnings(run)[0] == name
