@@ -75,7 +75,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
     "uneven_stamps": frozenset({"odometry_gap"}),
     "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
-    | {"treads_unequal", "tread_offset", "slip", "scale"},
+    | {"treads_unequal", "tread_offset", "slip", "scale", "track_width", "slip_in_turns"},
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
     | {"far_sensor", "track_width", "treads_unequal", "tread_offset"},
     "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
@@ -109,7 +109,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
     ),
-    "interpolated_poses": frozenset({"clocks_apart"}),
+    "interpolated_poses": frozenset({"clocks_apart", "yaw_jumps"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),
