@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -9,53 +10,19 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.lag import Signal, lag_between
 from odometry.config import block_from_table
 from odometry.errors import OdometryError
 from odometry.evaluation.other_odometry import LONGEST_GAP_S, Judge, OtherScore, score_other
 from odometry.evaluation.relative import EvaluationConfig
+from odometry.evaluation.score import Score
 from odometry.io.csv_table import read_csv_table
 from odometry.io.run_folder import doubt_of_axes
 from odometry.io.structured import read_json
-from odometry.io.trajectory_files import read_trajectory
+from odometry.io.trajectory_files import OPTICAL, format_of, read_trajectory
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-
-MOST_SHIFT_S = 3.5
-LEAST_SHIFT_S = 0.15
-LEAST_WIDTH_S = 0.5  # over which turn rates are taken
-CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
-
-
-def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
-    """By how much a trajectory's stamps are late; None unless that is plain.
-
-    Pieces of the time that both cover must have the same shift, far from zero by their own
-    scatter: a drive that hardly turns determines none.
-    """
-    begin_s = max(each.stamps_s[0] for each in (other, odometer))
-    end_s = min(each.stamps_s[-1] for each in (other, odometer))
-    period_s = max(float(np.median(np.diff(each.stamps_s))) for each in (other, odometer))
-    width_s = max(LEAST_WIDTH_S, 2 * period_s)
-    span_s = (begin_s + MOST_SHIFT_S, end_s - MOST_SHIFT_S)
-    if span_s[1] - span_s[0] < 3 * width_s:
-        return None
-    lag = lag_between(_heading(other), _heading(odometer), span_s, width_s, MOST_SHIFT_S)
-    if lag is None or lag.correlation < CORRELATED or lag.together < TOGETHER:
-        return None
-    least_s = max(LEAST_SHIFT_S, period_s, CERTAIN * lag.sigma_s)
-    return lag.seconds if abs(lag.seconds) > least_s else None
-
-
-def _heading(trajectory: Trajectory) -> Signal:
-    """Heading [rad] at stamps, whole turns counted; NaN outside."""
-    yaw = np.unwrap(trajectory.poses[:, 2])
-
-    def at(stamps_s: FloatArray) -> FloatArray:
-        return np.interp(stamps_s, trajectory.stamps_s, yaw, left=np.nan, right=np.nan)
-
-    return at
-
+from terrain.other_headings import other_readings, pose_fault
+from terrain.other_stamps import late_by_s, late_note
 
 FOLDER = "other_odometry"  # of a run folder: odometry that a bag had, as NAME.csv
 PREFIX = "other/"  # of its name among the trajectories of a run
@@ -90,8 +57,8 @@ def other_errors(
     -------
     dict
         Errors as of result.json, with `share` of the reference's stamps, `scale`, `turned_deg`,
-        `notes`, and `odometer`: the errors of ours at the same stamps. `error` alone where
-        something cannot be evaluated.
+        `notes`, and `odometer`: the errors of ours at the same stamps. No numbers where its
+        poses have a fault that the notes name, `error` alone where something cannot be evaluated.
     """
     kept = sorted((Path(run_path) / FOLDER).glob("*.csv")) if run_path else []
     files = {file.stem: file for file in kept} | dict(given)
@@ -102,10 +69,8 @@ def other_errors(
         try:
             judge = read_judge(folder)
             is_table = name not in given or _is_table(file)
-            trajectory, doubt = (_of_run(file), "") if is_table else _read(file, axes, times)
-            late_s = late_by_s(trajectory, judge.odometer)
-            doubts = [doubt, "" if late_s is None else _late(late_s)]
-            found[PREFIX + name] = _table(score_other(trajectory, judge), doubts)
+            read = Read(_of_run(file)) if is_table else _read(file, axes, times)
+            found[PREFIX + name] = _judged(read, judge)
         except OdometryError as error:
             found[PREFIX + name] = {"error": str(error)}
     return found
@@ -166,18 +131,31 @@ def _is_table(file: Path) -> bool:
     return False
 
 
-def _read(file: Path, axes: str, times: Path | None) -> tuple[Trajectory, str]:
+@dataclass(frozen=True)
+class Read:
+    """A trajectory as its file was read, why its axes are doubted, and what else yaw may be."""
+
+    trajectory: Trajectory
+    doubt: str = ""
+    readings: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+def _read(file: Path, axes: str, times: Path | None) -> Read:
     spatial = read_trajectory(file, times=times, axes=axes)
-    return spatial.plane, doubt_of_axes(spatial)
+    readings = other_readings(spatial, format_of(file)) if axes != OPTICAL else {}
+    return Read(spatial.plane, doubt_of_axes(spatial), readings)
 
 
-def _late(late_s: float) -> str:
-    way, sign = ("late", "-") if late_s > 0 else ("early", "+")
-    return (
-        f"its stamps seem {way} by {abs(late_s):.2f} s: shifted by {sign}{abs(late_s):.2f} s its "
-        "turns follow the odometer's best, in all parts of the run. Nothing is shifted: the errors "
-        "hold the shift as well"
-    )
+def _judged(read: Read, judge: Judge) -> dict[str, Any]:
+    """Errors of a trajectory with notes; no numbers where its poses are not what they seem."""
+    found = score_other(read.trajectory, judge)
+    fault = pose_fault(read.trajectory, judge, read.readings)
+    if fault is not None and not fault.counts:
+        uncounted = replace(found, score=Score(0), scale=np.nan, turned_rad=np.nan)
+        return _table(uncounted, [fault.note])
+    late_s = late_by_s(read.trajectory, judge.odometer)
+    doubts = [read.doubt, "" if late_s is None else late_note(late_s), fault.note if fault else ""]
+    return _table(found, doubts)
 
 
 def _table(found: OtherScore, doubts: Sequence[str]) -> dict[str, Any]:

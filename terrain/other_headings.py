@@ -1,0 +1,149 @@
+"""Faults of another program's poses that make its errors meaningless: dead poses, no heading."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.evaluation.other_odometry import Judge, held_stamps
+from odometry.geometry import se3
+from odometry.io.trajectory_files import from_optical
+from odometry.trajectory import SpatialTrajectory, Trajectory
+
+STILL_M, MOVED_M = 1e-6, 1.0  # the other moves by less, the reference by more
+CONSTANT_RAD = 1e-3  # the limit of `yaw_constant` in the check of pose.csv
+TURNED_RAD = 0.5  # a drive that turns by less says nothing about headings
+WIDTH_S = 1.0  # over which turns are taken: above the noise of a gyroscope and of poses
+FEWEST_TURNS = 10
+FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
+MOST_RATIO = 10.0  # of its turns to the odometer's: beyond is another unit (57.3 in degrees)
+NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
+# by format: shift that takes w, x, y, z as read to the other order, and both orders in words
+OTHER_ORDERS = {
+    "tum": (-1, "in the order qw qx qy qz", "qx qy qz qw"),
+    "euroc": (1, "in the order qx qy qz qw", "qw qx qy qz"),
+}
+
+
+@dataclass(frozen=True)
+class PoseFault:
+    """Something about another program's poses that its errors would not show.
+
+    Attributes
+    ----------
+    note : str
+        What is seen, its cause, and what to do.
+    counts : bool
+        Whether its errors still mean something.
+    """
+
+    note: str
+    counts: bool = False
+
+
+def other_readings(spatial: SpatialTrajectory, named: str) -> dict[str, FloatArray]:
+    """Yaw (N,) if quaternions have the other order, or axes are a camera's, by cause in words.
+
+    Parameters
+    ----------
+    spatial : SpatialTrajectory
+        As the file was read.
+    named : {"tum", "kitti", "euroc"}
+        Its format.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import odometry
+    >>> turned = odometry.Trajectory(np.zeros(1), np.array([[0.0, 0.0, 0.5]]))
+    >>> spatial = odometry.SpatialTrajectory.from_plane(turned)
+    >>> [len(yaw) for yaw in other_readings(spatial, "tum").values()]
+    [1, 1]
+    """
+    if named not in OTHER_ORDERS:
+        return {}
+    optical = from_optical(spatial).plane.poses[:, 2]
+    shift, seems, wanted = OTHER_ORDERS[named]
+    wxyz = np.roll(spatial.quaternions_wxyz, shift, axis=1)
+    turned = se3.pose(spatial.positions_m, se3.rotation_from_quaternion_wxyz(wxyz))
+    yaw = SpatialTrajectory(spatial.stamps_s, turned).roll_pitch_yaw[:, 2]
+    return {
+        f"its quaternions are {seems}, not {wanted} as the format has them": yaw,
+        "its axes are those of a camera: --axes optical": optical,
+    }
+
+
+def pose_fault(
+    trajectory: Trajectory, judge: Judge, readings: Mapping[str, FloatArray]
+) -> PoseFault | None:
+    """Why a trajectory's errors would mislead; None where nothing speaks against them.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    judge : Judge
+        Its odometer shows how the robot turned.
+    readings : Mapping of str to (N,)
+        Other yaw [rad] that the file may mean, by the cause in words.
+    """
+    xy = trajectory.poses[:, :2]
+    moved_m = float(np.ptp(judge.reference.poses[:, :2], axis=0).max())
+    if np.ptp(xy, axis=0).max() < STILL_M and moved_m > MOVED_M:
+        return PoseFault(
+            f"it never moves: all of its {len(xy)} positions are ({xy[0, 0]:.4g}, {xy[0, 1]:.4g}), "
+            "as of a topic that measures speeds alone and leaves the pose empty. Its errors are "
+            "not counted"
+        )
+    return _heading_fault(trajectory, judge.odometer, readings)
+
+
+def _heading_fault(
+    trajectory: Trajectory, odometer: Trajectory, readings: Mapping[str, FloatArray]
+) -> PoseFault | None:
+    rows = _ends(trajectory, odometer)
+    ours = _turns(odometer, odometer.poses[:, 2], rows)
+    if len(ours) < FEWEST_TURNS or np.ptp(np.cumsum(ours)) < TURNED_RAD:
+        return None
+    yaw = trajectory.poses[:, 2]
+    if _fits(as_read := _turns(trajectory, yaw, rows), ours, FOLLOWS_NOT):
+        return None
+    degrees = {"its yaw is in degrees, not in radians": np.radians(yaw)}
+    for cause, other in {**readings, **degrees}.items():
+        if _fits(_turns(trajectory, other, rows), ours, FOLLOWS):
+            return PoseFault(f"{cause}; so read, its turns follow those of ours. {NOT_COUNTED}")
+    if np.ptp(np.unwrap(yaw)) < CONSTANT_RAD:
+        return PoseFault(
+            f"its heading stays at {yaw[0]:.4g} rad while the robot turns by "
+            f"{np.abs(ours).sum():.1f} rad in all: a placeholder, or the numbers of a quaternion "
+            f"in another order. Write its heading. {NOT_COUNTED}"
+        )
+    if _fits(-as_read, ours, FOLLOWS):
+        note = "its turns are opposite to those of ours: z points down, or its sides are exchanged"
+        return PoseFault(f"{note}. Nothing is turned: the errors are of the path as given", True)
+    return None
+
+
+def _ends(trajectory: Trajectory, odometer: Trajectory) -> FloatArray:
+    """First and last stamps (2, K) of pieces of WIDTH_S or two poses, in no gap of either."""
+    begin_s = max(each.stamps_s[0] for each in (trajectory, odometer))
+    end_s = min(each.stamps_s[-1] for each in (trajectory, odometer))
+    width_s = max(WIDTH_S, 2 * float(np.median(np.diff(trajectory.stamps_s))))
+    edges = np.arange(begin_s, end_s, width_s)
+    held = held_stamps(trajectory, edges) & held_stamps(odometer, edges)
+    both = held[:-1] & held[1:]
+    return np.stack([edges[:-1][both], edges[1:][both]])
+
+
+def _turns(trajectory: Trajectory, yaw: FloatArray, ends_s: FloatArray) -> FloatArray:
+    """Turn (K,) of each piece by a yaw (N,) at the stamps of a trajectory."""
+    first, last = np.interp(ends_s, trajectory.stamps_s, np.unwrap(yaw))
+    return np.asarray(last - first)
+
+
+def _fits(turns: FloatArray, ours: FloatArray, least: float) -> bool:
+    """Whether turns (K,) rise with ours by a correlation of `least`, in the same unit."""
+    sizes = [float(np.sqrt(np.mean(each**2))) for each in (turns, ours)]
+    if not 0 < sizes[0] < MOST_RATIO * sizes[1] or np.ptp(turns) < CONSTANT_RAD:
+        return False
+    return float(np.corrcoef(turns, ours)[0, 1]) > least

@@ -1,0 +1,52 @@
+"""Whether the stamps of another program's poses are late, by its turns and the odometer's."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.lag import Signal, lag_between
+from odometry.trajectory import Trajectory
+
+MOST_SHIFT_S = 3.5
+LEAST_SHIFT_S = 0.15
+LEAST_WIDTH_S = 0.5  # over which turn rates are taken
+CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
+
+
+def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
+    """By how much a trajectory's stamps are late; None unless that is plain.
+
+    Pieces of the time that both cover must have the same shift, far from zero by their own
+    scatter: a drive that hardly turns determines none.
+    """
+    begin_s = max(each.stamps_s[0] for each in (other, odometer))
+    end_s = min(each.stamps_s[-1] for each in (other, odometer))
+    period_s = max(float(np.median(np.diff(each.stamps_s))) for each in (other, odometer))
+    width_s = max(LEAST_WIDTH_S, 2 * period_s)
+    span_s = (begin_s + MOST_SHIFT_S, end_s - MOST_SHIFT_S)
+    if span_s[1] - span_s[0] < 3 * width_s:
+        return None
+    lag = lag_between(_heading(other), _heading(odometer), span_s, width_s, MOST_SHIFT_S)
+    if lag is None or lag.correlation < CORRELATED or lag.together < TOGETHER:
+        return None
+    least_s = max(LEAST_SHIFT_S, period_s, CERTAIN * lag.sigma_s)
+    return lag.seconds if abs(lag.seconds) > least_s else None
+
+
+def _heading(trajectory: Trajectory) -> Signal:
+    """Heading [rad] at stamps, whole turns counted; NaN outside."""
+    yaw = np.unwrap(trajectory.poses[:, 2])
+
+    def at(stamps_s: FloatArray) -> FloatArray:
+        return np.interp(stamps_s, trajectory.stamps_s, yaw, left=np.nan, right=np.nan)
+
+    return at
+
+
+def late_note(late_s: float) -> str:
+    """What is said of stamps that are late, or early, by so much."""
+    way, sign = ("late", "-") if late_s > 0 else ("early", "+")
+    return (
+        f"its stamps seem {way} by {abs(late_s):.2f} s: shifted by {sign}{abs(late_s):.2f} s its "
+        "turns follow the odometer's best, in all parts of the run. Nothing is shifted: the errors "
+        "hold the shift as well"
+    )
