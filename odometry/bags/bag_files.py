@@ -16,6 +16,7 @@ from odometry.bags.sqlite_file import MAGIC as SQLITE_MAGIC
 from odometry.bags.sqlite_file import sqlite_messages
 from odometry.bags.topic import Message
 from odometry.errors import BagError
+from odometry.io.files import naming_temporary
 
 KINDS = {ROS1_MAGIC: "ros1", MCAP_MAGIC: "mcap", SQLITE_MAGIC: "sqlite3"}
 ARCHIVES = {
@@ -60,7 +61,11 @@ class BagFile:
         with tempfile.TemporaryDirectory() as folder:
             plain = Path(folder) / self.path.stem
             try:
-                with zstd.open(self.path, "rb") as packed, plain.open("wb") as unpacked:
+                with (
+                    naming_temporary(),
+                    zstd.open(self.path, "rb") as packed,
+                    plain.open("wb") as unpacked,
+                ):
                     shutil.copyfileobj(packed, unpacked, 1024**2)
             except (zstd.ZstdError, EOFError) as problem:
                 losses.append(f"{self.path}: cannot be decompressed to its end: {problem}")

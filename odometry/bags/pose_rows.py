@@ -13,6 +13,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.bags.message_fields import POSES
 from odometry.errors import BagError
 from odometry.geometry import se3
+from odometry.io.files import naming_temporary
 
 TILTED_DEG = 50.0  # no skid-steer robot drives there in the mean
 OFF_GRAVITY_DEG = 15.0  # of the mean specific force, from the vertical of the orientation
@@ -59,7 +60,8 @@ class Attitudes:
         if forces_m_s2.shape[1] == 3:
             self._force += np.einsum("nij,nj->i", rotations, np.nan_to_num(forces_m_s2[valid]))
         angles = se3.roll_pitch_yaw(of_robot)[:, :2]
-        self._file.write(np.column_stack([stamps_ns[valid] / 1e9, angles]).tobytes())
+        with naming_temporary():
+            self._file.write(np.column_stack([stamps_ns[valid] / 1e9, angles]).tobytes())
         self.written += len(rotations)
 
     def doubt(self) -> str:
@@ -80,7 +82,8 @@ class Attitudes:
 
     def into(self, odometry_csv: Path) -> None:
         """Add the columns roll and pitch [rad] to a file; empty before and after the attitudes."""
-        self._file.flush()
+        with naming_temporary():
+            self._file.flush()
         kept = np.memmap(self._file, dtype=float, mode="r").reshape(-1, 3)
         part = odometry_csv.with_suffix(".part")
         with odometry_csv.open(encoding="utf-8") as old, part.open("w", encoding="utf-8") as new:

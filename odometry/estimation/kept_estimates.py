@@ -11,6 +11,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.estimate import Estimate, Innovation
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.transition import STATES
+from odometry.io.files import naming_temporary
 
 BLOCK = 256  # estimates that are written together, each number beside its own kind
 SIZES = {
@@ -70,7 +71,8 @@ class KeptEstimates(Sequence[Estimate]):
         self._note(estimate, self._count)
         self._count += 1
         if self._count % BLOCK == 0:
-            self._file.write(self._unwritten.tobytes())
+            with naming_temporary():
+                self._file.write(self._unwritten.tobytes())
 
     def end_with(self, last: Estimate) -> None:
         """Put an estimate with other events in place of the last."""

@@ -4,6 +4,7 @@ import errno
 import io
 import os
 import stat
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,8 +15,8 @@ from odometry.errors import OdometryError, OutputError
 TABLE_BYTES = 4 * 1024**3  # ten million rows of a dozen columns have about 1.5 GB
 LINE_CHARACTERS = 65536  # a row of numbers has a few hundred
 
-# a full disk, a quota, the largest size of a file, a disk that fails or may not be written to
-NOT_WRITTEN = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS)
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # disk, quota, or a file of the largest size
+NOT_WRITTEN = (*FULL, errno.EIO, errno.EROFS)  # or a disk that fails or may not be written to
 
 
 @contextmanager
@@ -153,6 +154,43 @@ def atomic_write(path: Path) -> Iterator[Path]:
         raise OutputError(f"cannot write {path}: {error.strerror}") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def naming_full(place: Path) -> Iterator[None]:
+    """Name in the message the file that does not fit, or `place` where the error names none.
+
+    Raises
+    ------
+    OutputError
+        If the disk is full, or the largest size of a file is reached.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        file = error.filename or place
+        raise OutputError(f"cannot write to {file}: {error.strerror}") from error
+
+
+@contextmanager
+def naming_temporary() -> Iterator[None]:
+    """`naming_full` of the folder of temporary files, which may lie on another disk.
+
+    Raises
+    ------
+    OutputError
+        As `naming_full`.
+    """
+    folder = tempfile.gettempdir()
+    try:
+        with naming_full(Path(folder)):
+            yield
+    except OutputError as error:
+        raise OutputError(
+            f"{error} (temporary files; set TMPDIR to a folder with more room)"
+        ) from error
 
 
 def check_writable(folder: Path) -> None:

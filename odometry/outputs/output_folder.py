@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from odometry.errors import OutputError
-from odometry.io.files import check_writable
+from odometry.io.files import check_writable, naming_full
 from odometry.outputs.leftovers import is_temporary, remove_stages, remove_temporaries, stage_name
 from odometry.outputs.manifest import (
     FINISHED,
@@ -174,6 +174,7 @@ def _remove_empty(folder: Path, root: Path) -> None:
 def _naming(stage: Path, out: Path) -> Iterator[None]:
     """Name in messages the file that was to be made, not the temporary one."""
     try:
-        yield
+        with naming_full(stage):
+            yield
     except OutputError as error:
         raise OutputError(str(error).replace(str(stage), str(out))) from error

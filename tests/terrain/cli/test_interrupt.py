@@ -1,14 +1,24 @@
 """Interrupts, a full disk and a closed pipe: one line that is true, and the right exit code."""
 
+import errno
 import os
 import resource
 import signal
 import subprocess
 import sys
+import tempfile
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from odometry.bags.pose_rows import Attitudes
+from odometry.errors import OutputError
 from odometry.outputs.manifest import read_manifest
+from odometry.outputs.output_folder import OutputFolder
+from odometry.outputs.provenance import Made
+
+MADE = Made("simulate", "", {}, (), {})
 
 SETUP = """
 import os, signal, resource
@@ -101,6 +111,44 @@ def test_a_full_disk_names_the_file_and_leaves_nothing(tmp_path):
     assert answer.stderr == f"Error: cannot write {out / 'odometry.csv'}: File too large\n"
     assert not out.exists()
     assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] != 4000
+
+
+@pytest.mark.parametrize("named", ["odometry.csv", None])
+def test_a_full_disk_of_a_plain_stream_names_the_place(tmp_path, named):
+    """As `import` and the MCAP of `export` write: the system names no file when it flushes."""
+    out = tmp_path / "run"
+
+    def fill(part):
+        name = None if named is None else str(part / named)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), name)
+
+    with pytest.raises(OutputError) as error, OutputFolder(out, MADE, ()).writing() as part:
+        fill(part)
+    place = out if named is None else out / named
+    assert str(error.value) == f"cannot write to {place}: No space left on device"
+    assert not out.exists()
+
+
+def test_a_full_disk_of_temporary_files_says_which_and_what_to_set(monkeypatch):
+    def full(_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    attitudes = Attitudes(np.eye(3))
+    attitudes.close()
+    monkeypatch.setattr(attitudes, "_file", SimpleNamespace(write=full))
+    with pytest.raises(OutputError) as error:
+        attitudes.add(np.array([1, 2]), np.tile([1.0, 0, 0, 0], (2, 1)), np.empty((2, 0)))
+    assert tempfile.gettempdir() in str(error.value)
+    assert "TMPDIR" in str(error.value)
+
+
+def test_another_error_while_writing_keeps_its_own_message(tmp_path):
+    missing = OSError(errno.ENOENT, os.strerror(errno.ENOENT), "an_input.csv")
+    with (
+        pytest.raises(FileNotFoundError, match=r"an_input\.csv"),
+        OutputFolder(tmp_path / "run", MADE, ()).writing(),
+    ):
+        raise missing
 
 
 def test_a_closed_pipe_is_no_message(tmp_path):
