@@ -31,11 +31,14 @@ class OutputFolder:
     made : Made
     earlier : tuple of str
         Names of the files that an earlier run wrote there, relative, with slashes.
+    when_whole : callable
+        Of `out`, once it is written and whole.
     """
 
     out: Path
     made: Made
     earlier: tuple[str, ...]
+    when_whole: Callable[[Path], None] = lambda _: None
 
     @contextmanager
     def writing(self) -> Iterator[Path]:
@@ -60,6 +63,7 @@ class OutputFolder:
                     Manifest(self.made.verb, UNFINISHED, ()).write(self.out)
                 yield stage
                 self._move(stage)
+                self.when_whole(self.out)
         except BaseException as error:
             shutil.rmtree(stage, ignore_errors=True)
             error.add_note(self._left(made))

@@ -111,6 +111,7 @@ def add_to_run(folders: tuple[Path, ...], out: Path | None, poses: PoseFiles) ->
     """
     from odometry.errors import OutputError
     from odometry.outputs.manifest import check_finished
+    from terrain.cli.outputs import WHOLE
 
     if len(folders) > 1 or out is not None:
         raise click.UsageError("poses are added to one run folder, in its place: leave out --out")
@@ -121,6 +122,7 @@ def add_to_run(folders: tuple[Path, ...], out: Path | None, poses: PoseFiles) ->
             raise OutputError(f"{folder / name}.csv is there already; move it, or delete it")
     lines = write_poses(folder, poses)
     _say_in_manifest(folder, poses)
+    WHOLE.append(folder)
     click.echo("\n".join([f"Added to the run {folder}:", *lines]))
     return folder
 

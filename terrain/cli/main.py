@@ -119,8 +119,11 @@ class Interrupted(BaseException):
 
     @property
     def left(self) -> str:
-        """What was written, by those who were writing."""
-        return "; ".join(getattr(self, "__notes__", [])) or "nothing was written"
+        """What was written, by those who were writing and those who had written."""
+        outputs = sys.modules.get("terrain.cli.outputs")  # not loaded: nothing was written
+        whole = dict.fromkeys(outputs.WHOLE if outputs is not None else [])
+        said = [f"{out} was written and is whole; only what follows it is missing" for out in whole]
+        return "; ".join([*getattr(self, "__notes__", []), *said]) or "nothing was written"
 
 
 def raise_on_signals(*numbers: signal.Signals) -> None:

@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,7 @@ def folder_names(folders: Sequence[Path], taken: Iterable[str] = ()) -> list[str
     return names
 
 
+WHOLE: list[Path] = []  # folders that this process has written to their end
 OUTPUTS = ("out", "picture", "ros")  # options that name what a command writes
 NO_MATTER = (*OUTPUTS, "processes", "scheduler")  # where it is written, and who computes it
 
@@ -46,7 +48,8 @@ def claim_folder(out: Path, *, reads_images: bool = False) -> "OutputFolder":
 
     inputs = _inputs(click.get_current_context())
     require_apart(out, inputs)
-    return claim(out, made_by(inputs, reads_images=reads_images))
+    claimed = claim(out, made_by(inputs, reads_images=reads_images))
+    return replace(claimed, when_whole=WHOLE.append)
 
 
 def require_apart(out: Path, inputs: "Iterable[Input]") -> None:

@@ -87,6 +87,24 @@ def test_an_interrupt_says_in_one_line_what_it_left(tmp_path, name, code, word, 
         assert not out.exists()
 
 
+def test_an_interrupt_after_the_output_says_that_it_is_whole(tmp_path):
+    """`import` still checks the run that it wrote; `simulate` stands for it here."""
+    out = tmp_path / "run"
+    after = """
+import click
+def echo(*a, **k):
+    click.echo = kept
+    {stop}
+kept, click.echo = click.echo, echo
+""".format(stop=STOP.format(signal="SIGINT"))
+    answer = simulate(after, out)
+    assert answer.returncode == 130
+    assert answer.stderr == (
+        f"Interrupted: {out} was written and is whole; only what follows it is missing\n"
+    )
+    assert read_manifest(out).state == "finished"
+
+
 def test_an_interrupt_over_an_earlier_result_keeps_it(tmp_path):
     out = tmp_path / "run"
     assert simulate("", out).returncode == 0
