@@ -13,6 +13,7 @@ from odometry.export.drive_numbers import MotionErrors, Pace
 from odometry.io.csv_table import read_csv_table
 from odometry.io.structured import read_json
 from odometry.outputs.manifest import check_finished, check_format
+from odometry.outputs.written_tables import changes_of
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.table import Table
 from odometry.trajectory import Trajectory
@@ -40,6 +41,8 @@ class ExportSource:
         Side of the cells of a map.
     comment : str
         Lines that begin with #, for files that have comments.
+    edited : tuple of str
+        Which files of a result are not as they were written, a sentence each.
     """
 
     path: Path
@@ -49,6 +52,7 @@ class ExportSource:
     track_width_m: float | None = None
     cell_m: float = 0.5
     comment: str = ""
+    edited: tuple[str, ...] = ()
 
     @property
     def folder(self) -> Path:
@@ -141,7 +145,7 @@ def read_export_source(
     Raises
     ------
     ExportError
-        If a folder has no result of `run`.
+        If a folder has no result of `run`, or a table of it has lost rows.
     OdometryError
         As `read_parameters`, and if the folder is unfinished.
     """
@@ -157,11 +161,15 @@ def read_export_source(
     if not _is_result(content):
         raise ExportError(f"{file}: it is not a result of `run`")
     check_format(file, content.get("format", RESULT_FORMAT), RESULT_FORMAT, ExportError)
+    changes = changes_of(path)
+    if changes.lost:
+        raise ExportError("; ".join(changes.lost))
     learned = path / "learned.toml"
     parameters = read_parameters(learned) if learned.exists() else ParameterSet()
     robot = content.get("robot", {})
     width = _number(robot.get("track_width")) if isinstance(robot, dict) else None
-    return ExportSource(path, parameters, content, terrain, track_width_m or width, cell_m, comment)
+    chosen = (terrain, track_width_m or width, cell_m, comment)
+    return ExportSource(path, parameters, content, *chosen, changes.edited)
 
 
 def _is_result(content: Any) -> bool:

@@ -88,12 +88,15 @@ class Manifest:
         What the program wrote there, this file left out; relative, with slashes.
     made : Mapping
         What made it, by `Made.to_table`; empty while unfinished.
+    sums : Mapping
+        `sha256` and `lines` of tables by name; empty where none were taken.
     """
 
     verb: str
     state: str
     files: tuple[str, ...]
     made: Mapping[str, Any] = field(default_factory=dict)
+    sums: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def write(self, folder: Path) -> None:
         """Write it into its folder."""
@@ -104,7 +107,7 @@ class Manifest:
             "state": self.state,
             "files": list(self.files),
             "made": dict(self.made),
-        }
+        } | ({"sums": dict(self.sums)} if self.sums else {})
         with atomic_write(folder / NAME) as part:
             part.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
@@ -131,7 +134,10 @@ def read_manifest(folder: Path) -> Manifest | None:
     whole = isinstance(verb, str) and state in (FINISHED, UNFINISHED) and isinstance(made, dict)
     if not whole or not isinstance(files, list) or not all(map(_is_inside, files)):
         raise OutputError(f"{file}: damaged; {TO_DO}")
-    return Manifest(str(verb), str(state), tuple(files), made or {})
+    sums = content.get("sums", {})  # older versions took none
+    if not _are_sums(sums, files):
+        raise OutputError(f"{file}: damaged; {TO_DO}")
+    return Manifest(str(verb), str(state), tuple(files), made or {}, sums)
 
 
 TO_DO = "choose another --out, or delete the folder"
@@ -157,6 +163,17 @@ def check_finished(path: Path) -> None:
                 f"{path}: unfinished: `{PROGRAM} {manifest.verb}` was stopped while it wrote to "
                 f"{folder}; run it again"
             )
+
+
+def _are_sums(sums: object, files: list[str]) -> bool:
+    """Whether sums are of files of the manifest, each with `sha256` and `lines`."""
+    return isinstance(sums, dict) and all(
+        name in files
+        and isinstance(each, dict)
+        and isinstance(each.get("sha256"), str)
+        and isinstance(each.get("lines"), int)
+        for name, each in sums.items()
+    )
 
 
 def _is_inside(name: object) -> bool:

@@ -19,6 +19,9 @@ from odometry.outputs.manifest import (
 )
 from odometry.outputs.own_names import files_of_version_0_4, has_own_name
 from odometry.outputs.provenance import Made
+from odometry.outputs.written_tables import table_sums
+
+SUMMED_VERBS = ("run",)  # other verbs read its tables; a run folder is meant to be edited
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,8 @@ class OutputFolder:
             (stage / name).replace(self.out / name)
         for name in both:
             _remove_empty((self.out / name).parent, self.out)
-        Manifest(self.made.verb, FINISHED, new, self.made.to_table()).write(self.out)
+        sums = table_sums(self.out, new) if self.made.verb in SUMMED_VERBS else {}
+        Manifest(self.made.verb, FINISHED, new, self.made.to_table(), sums).write(self.out)
 
     def _left(self, made: list[Path]) -> str:
         """Tidy up after a failure, and say what there is in the folder now."""

@@ -55,6 +55,8 @@ def evaluate(
         print_table([("folder", "run", "trajectory", "against", *HEADER[1:]), *rows])
         click.echo("Per metre of wheel travel, over the horizon that each result.json names.")
         for name, of in results.items():
+            for one in of.get("edited", []):
+                click.echo(f"Warning: {one}; the errors above are those of result.json", err=True)
             if lost := _not_found(of):
                 click.echo(f"Note: {name}: {lost}", err=True)
             for other, errors in _others(of).items():
@@ -80,16 +82,21 @@ def _named_files(texts: Sequence[str]) -> dict[str, Path]:
 def _read(folder: Path, given: Mapping[str, Path], axes: str, times: Path | None) -> dict[str, Any]:
     """Errors of one folder; what went wrong where they cannot be read."""
     from odometry.errors import OdometryError
+    from odometry.outputs.written_tables import changes_of
     from terrain.other_odometry import other_errors
     from terrain.results import read_errors
 
     try:
         found = read_errors(folder)
+        changes = changes_of(folder)
+        if changes.lost:
+            return {"error": "; ".join(changes.lost)}
         run_path = found["run_path"]
         others = other_errors(folder, given, run_path=run_path, axes=axes, times=times)
     except OdometryError as error:
         return {"error": str(error)}
-    return found | ({"others": others} if others else {})
+    edited = {"edited": list(changes.edited)} if changes.edited else {}
+    return found | ({"others": others} if others else {}) | edited
 
 
 def _not_found(result: Mapping[str, Any]) -> str:

@@ -87,6 +87,8 @@ def export(
         cell_m=cell_m,
         comment=output.made.to_comment(),
     )
+    for one in exported.edited:
+        click.echo(f"Warning: {one}; it is exported as it is now", err=True)
     with output.writing() as part:
         for name in dict.fromkeys(formats):
             _writer(name)(exported, part)
