@@ -174,7 +174,7 @@ def merge(out: Path, rows: Sequence[Row], before: ParameterSet) -> Learned:
     if len(robots) > 1:
         named = ", ".join(f"{name or 'a robot'} {width:g} m wide" for name, width in robots)
         said = f"Nothing is merged, the runs are of several robots: {named}"
-        return Learned(before, {}, (said,))
+        return Learned(before, {}, (said, _absent("none was merged")))
     after = {
         row.name: read_parameters(out / row.name / LEARNED)
         for row in done
@@ -186,7 +186,16 @@ def merge(out: Path, rows: Sequence[Row], before: ParameterSet) -> Learned:
     }
     misled = [f"{row.name} ({' '.join(row.flags)})" for row in done if row.flags]
     said = f"Not merged, because something misled the filter: {', '.join(misled)}"
-    return Learned(before, terrains, (said,) if misled else ())
+    left_out = [said] if misled else []
+    if not terrains:
+        others = "of the others changed" if misled and len(misled) < len(done) else "changed"
+        why = f"no run {others} the parameters of a terrain" if done else "no run was finished"
+        left_out.append(_absent("none was merged" if len(misled) == len(done) > 0 else why))
+    return Learned(before, terrains, tuple(left_out))
+
+
+def _absent(why: str) -> str:
+    return f"No learned.toml is written: {why}"
 
 
 def write_learned(learned: Learned, file: Path, comment: str) -> bool:
