@@ -165,6 +165,8 @@ def content_of(followed: Followed) -> dict[str, Any]:
             {"from_s": from_s, "to_s": to_s, "seen": seen, "felt": felt}
             for from_s, to_s, seen, felt in followed.disagreements
         ],
+        "both_named_s": followed.compared_s if followed.seen else None,
+        "none_of_these_while_seen_s": followed.unfit_while_seen[0] if followed.seen else None,
     }
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import AnyArray, IntArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
 from odometry.modes.bank_inputs import Signals
@@ -120,6 +120,19 @@ class Followed:
         return disagreements(self.motion, self.seen_labels, config.sure, config.lasting_s)
 
     @property
+    def compared_s(self) -> float:
+        """For how long camera and motion both name a mode [s]."""
+        both = ~np.isin(self.answers(self.motion), NO_MODES) & (self.seen_labels != UNKNOWN)
+        return float(_lasts_s(self.motion) @ both)
+
+    @property
+    def unfit_while_seen(self) -> tuple[float, tuple[str, ...]]:
+        """For how long no mode fits the motion while the camera names one [s], and which."""
+        unfit = (self.answers(self.motion) == NONE_OF_THESE) & (self.seen_labels != UNKNOWN)
+        names = tuple(sorted(set(self.seen_labels[unfit].tolist())))
+        return float(_lasts_s(self.motion) @ unfit), names
+
+    @property
     def foreign_labels(self) -> tuple[str, ...]:
         """Terrains of the run that are no mode: answers on them are not scored."""
         return tuple(sorted(set(self.motion.labels.tolist()) - {UNKNOWN, *self.mode_set.names}))
@@ -135,7 +148,7 @@ class Followed:
 
     def shares(self, track: ModeTrack) -> dict[str, float]:
         """Share of the time of each answer that was given, the longest first."""
-        answers, lasts_s = self.answers(track), np.append(np.diff(track.stamps_s), 0.0)
+        answers, lasts_s = self.answers(track), _lasts_s(track)
         whole = max(float(lasts_s.sum()), 1e-12)
         held = {
             name: float(lasts_s[answers == name].sum()) / whole
@@ -147,7 +160,7 @@ class Followed:
         """Share of the time in which a mode is probable enough, and is not named for its fit."""
         sure = track.probabilities.max(axis=1) >= self.config.sure
         open_ = self.answers(track) == UNDETERMINED
-        lasts_s = np.append(np.diff(track.stamps_s), 0.0)
+        lasts_s = _lasts_s(track)
         return float(lasts_s @ (sure & open_)) / max(float(lasts_s.sum()), 1e-12)
 
     def candidates(self, track: ModeTrack) -> AnyArray:
@@ -163,7 +176,7 @@ class Followed:
         """Share of the undetermined time of each set of modes it may be, the longest first."""
         sets, places = self._candidate_sets(track)
         undetermined = self.answers(track) == UNDETERMINED
-        lasts_s = np.append(np.diff(track.stamps_s), 0.0) * undetermined
+        lasts_s = _lasts_s(track) * undetermined
         held_s = np.bincount(places, weights=lasts_s)
         longest = [place for place in np.argsort(-held_s, kind="stable") if held_s[place] > 0]
         return {sets[place]: float(held_s[place] / held_s.sum()) for place in longest}
@@ -178,6 +191,11 @@ class Followed:
     def score(self, track: ModeTrack) -> Score:
         """Answers of a track against the modes that the run names."""
         return score_of(track, self.config.sure)
+
+
+def _lasts_s(track: ModeTrack) -> FloatArray:
+    """How long (N,) each stamp lasts [s]; the last not at all."""
+    return np.append(np.diff(track.stamps_s), 0.0)
 
 
 def followed(

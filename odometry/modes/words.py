@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from odometry.modes.camera_words import camera_words
 from odometry.modes.detection import Detection, Score
 from odometry.modes.doubts import LEAST_DOUBT, Doubt, doubts, not_checked
 from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed, Misfit
@@ -62,14 +63,6 @@ def percent(share: float) -> str:
     return "-" if np.isnan(share) else f"{round(100 * share)} %"
 
 
-def disagreement_words(one: tuple[float, float, str, str]) -> str:
-    """Where camera and motion disagree."""
-    from_s, to_s, seen, felt = one
-    return (
-        f"From {from_s:.1f} s to {to_s:.1f} s it is {seen} by the camera and {felt} by the motion."
-    )
-
-
 def _more(followed: Followed) -> Iterator[str]:
     yield from _open_words(followed)
     for one in doubts(followed):
@@ -89,12 +82,7 @@ def _more(followed: Followed) -> Iterator[str]:
             f"The run names {', '.join(followed.foreign_labels)}, which is no mode: the answers "
             "there were not scored."
         )
-    if followed.seen:
-        argued = followed.disagreements
-        yield from map(disagreement_words, argued)
-        if not argued:
-            lasting_s = followed.config.lasting_s
-            yield f"Camera and motion disagree nowhere for {lasting_s:g} s or longer."
+    yield from camera_words(followed)
 
 
 def _open_words(followed: Followed) -> Iterator[str]:

@@ -170,7 +170,6 @@ def _followed(
     feel: "FeelModel | None",
     span: "Span",
 ) -> "Followed":
-    from odometry.errors import RunFolderError
     from odometry.modes.camera_prior import seen_grounds
     from odometry.modes.followed import followed
     from terrain.cli.recordings import read_run, with_turns
@@ -178,5 +177,9 @@ def _followed(
     (run,) = with_turns([read_run(folder, span)])
     grounds = () if seen is None else seen_grounds(seen, run)
     if seen is not None and not grounds:
-        raise RunFolderError(f"{seen}: vision named no terrain that {folder} gets to")
+        click.echo(
+            f"Note: {seen}: vision named no terrain that {folder} gets to; the modes are "
+            "recognised by motion alone",
+            err=True,
+        )
     return followed(run, mode_set, config, grounds, feel=feel, show_progress=True)

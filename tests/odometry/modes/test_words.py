@@ -5,10 +5,11 @@ import json
 import numpy as np
 import pytest
 
+from odometry.modes.camera_prior import SeenGround
 from odometry.modes.files import content_of
 from odometry.modes.followed import followed
 from odometry.modes.mode_set import NONE_OF_THESE
-from odometry.modes.words import in_short, percent, scale_word
+from odometry.modes.words import in_short, percent, scale_word, sentences
 from tests.odometry.modes.mode_examples import run_of, velocity_set
 
 ICE = ["ice"] * 400
@@ -45,6 +46,23 @@ def test_where_no_mode_fits_it_is_said_since_when_and_in_which_signal(leaving):
     assert (said["from_s"], said["signal"]) == (one.from_s, "wz")
     assert content["motion"]["shares_of_time"][NONE_OF_THESE] > 0.3
     assert json.dumps(content, allow_nan=False)
+
+
+def test_where_the_camera_names_a_terrain_that_the_motion_does_not_fit_it_is_said():
+    """On what turns twice as much as the widest mode from 0 s on, the camera says ice."""
+    run = run_of(np.repeat([4.0], 400), labels=ICE)
+    end_s = float(run.odometry.stamps_s[-1])
+    found = followed(run, velocity_set(), seen=(SeenGround(0.0, "ice", 0.9),))
+    unfit_s, names = found.unfit_while_seen
+    assert names == ("ice",)
+    assert 0.5 * end_s < unfit_s <= end_s
+    said = " ".join(sentences(found))
+    assert f"The motion fits no mode for {unfit_s:.1f} s in which the camera names ice" in said
+    assert "neither checks the other" in said
+    assert "disagree nowhere" not in said
+    content = content_of(found)
+    assert content["none_of_these_while_seen_s"] == unfit_s
+    assert content["both_named_s"] < found.config.lasting_s
 
 
 def test_none_of_these_is_neither_right_nor_wrong(leaving):

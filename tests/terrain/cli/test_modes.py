@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -107,7 +108,9 @@ def test_what_was_seen_makes_a_second_track(with_sight):
     assert "With the camera: ice: detected after" in answer.stdout
     content = json.loads((out / "result.json").read_text())
     assert content["sight"]["told"] == 2
-    assert "Camera and motion disagree nowhere for 2 s or longer." in answer.stdout
+    assert "Camera and motion disagree nowhere for 2 s or longer, in the " in answer.stdout
+    assert content["both_named_s"] > 2
+    assert content["none_of_these_while_seen_s"] < 2
     assert (out / "modes_with_sight.csv").exists()
 
 
@@ -193,7 +196,6 @@ def test_traction_modes_need_poses(make, tmp_path):
         (SEEN.replace("tar", "mud"), ParameterError, "'mud' .* is no mode; expected one of ice, t"),
         (SEEN.replace("0.9", "1.9"), ParameterError, "confidence 1.9"),
         ("t,label\n0,ice\n", RunFolderError, "'confidence' is missing"),
-        (SEEN.replace("0.5\n", "99\n"), RunFolderError, "named no terrain that .*drive gets to"),
     ],
 )
 def test_a_sight_that_cannot_be_used_is_reported(with_sight, content, error, message):
@@ -201,6 +203,18 @@ def test_a_sight_that_cannot_be_used_is_reported(with_sight, content, error, mes
     with pytest.raises(error, match=message):
         raise answer.exception
     assert not out.exists()
+
+
+@pytest.mark.parametrize("content", [SEEN.replace("0.5\n", "99\n"), SEEN.replace("0.9", "")])
+def test_a_sight_without_a_label_leaves_the_motion(with_sight, content):
+    content = re.sub("(?m),(ice|tar),", ",unknown,", content) if ",," in content else content
+    answer, out = with_sight(content)
+    assert answer.exit_code == 0, answer.output
+    assert "vision named no terrain" in answer.stderr
+    assert "by motion alone" in answer.stderr
+    assert (out / "modes.csv").exists()
+    assert not (out / "modes_with_sight.csv").exists()
+    assert "Camera and motion" not in answer.stdout
 
 
 def test_an_unknown_key_of_the_set_is_reported_before_anything_is_written(make, models, tmp_path):
