@@ -7,6 +7,8 @@ from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.region import Region
 
+ASTRIDE = "astride:"  # begins the reason where the two tread strips differ
+
 
 @dataclass(frozen=True)
 class ImageLabel:
@@ -74,7 +76,7 @@ def answered(
         return ImageLabel(
             stamp_s, name, left, confidence, region, why, left, right, class_distance=distance
         )
-    reason = f"astride: {left} on the left, {right} on the right"
+    reason = f"{ASTRIDE} {left} on the left, {right} on the right"
     return ImageLabel(
         stamp_s, name, UNKNOWN, confidence, region, reason, left, right, class_distance=distance
     )

@@ -12,7 +12,7 @@ from terrain.classification.answer import DOUBTFUL, IMPROBABLE
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.evaluation_notes import event_line
-from terrain.image_label import ImageLabel
+from terrain.image_label import ASTRIDE, ImageLabel
 from terrain.run_result import RunResult
 
 MANY_REFUSED = 0.1
@@ -107,10 +107,20 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         image_label.reason or "unlike any training patch" for image_label in image_labels
     )
     words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
+    nothing = "no terrain came into force but that of the start"
+    astride = sum(count for reason, count in reasons.items() if reason.startswith(ASTRIDE))
+    others = (count for reason, count in reasons.items() if not reason.startswith(ASTRIDE))
+    if astride > max(others, default=0):
+        return [
+            f"vision named one terrain for both treads in none of {len(image_labels)} images: "
+            f"{words}; {nothing}. With --per-tread an image counts where both treads have the same "
+            "label (columns left and right of terrain.csv); without it the ground ahead is "
+            "classified as one"
+        ]
     return [
-        f"vision named no terrain in any of {len(image_labels)} images: {words}; the terrain "
-        "in force never changed. Try terrain-odometry camera RUN --model MODEL --out DIR: it shows "
-        "what the camera sees and suggests a pitch"
+        f"vision named no terrain in any of {len(image_labels)} images: {words}; {nothing}. "
+        "Try terrain-odometry camera RUN --model MODEL --out DIR: it shows what the camera sees "
+        "and suggests a pitch"
     ]
 
 

@@ -8,6 +8,7 @@ from odometry.estimation.filter_event import FilterEvent
 from terrain.classification.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.cli.hints import hints
+from terrain.image_label import ASTRIDE
 
 
 def result(
@@ -119,6 +120,18 @@ def test_vision_that_names_nothing_says_why():
     assert "the region lies outside the image (2), unlike any training patch (1)" in hint
     assert hints(sighted(outside, ("gravel", "")), vision=True) == []
     assert hints(sighted(), vision=True) == []
+
+
+def test_treads_on_two_terrains_are_no_matter_of_the_pitch():
+    """As `--per-tread` labels them: a reason of its own for each pair of names."""
+    edge = [("unknown", f"{ASTRIDE} {pair}") for pair in ("a on the left", "b on the left")]
+    still = ("", "the robot is stationary")
+    (hint,) = hints(sighted(*edge, *edge, still, still, still), vision=True)
+    assert "one terrain for both treads in none of 7 images" in hint
+    assert "--per-tread" in hint
+    assert "pitch" not in hint
+    (hint,) = hints(sighted(*edge, still, still), vision=True)
+    assert "pitch" in hint
 
 
 def test_what_the_filter_noticed_is_said_the_first_ten_in_full():
