@@ -43,7 +43,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
     if result.watcher is not None and known:
         found += [
             f"the model knows {name!r}, the parameter set does not: it starts from a broad prior"
-            for name in sorted(set(result.watcher.classifier.classes_) - set(known))
+            for name in sorted(set(map(str, result.watcher.classifier.classes_)) - set(known))
         ]
     if result.watcher is not None:
         if isinstance(result.watcher.classifier, OwnStatisticsClassifier):
@@ -78,7 +78,7 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
 
 def _start(assumed: str, of_run: str | None, image_labels: Sequence[ImageLabel]) -> list[str]:
     """Say that the run began on a terrain that was not named and differs from the first label."""
-    labels = (image_label.label for image_label in image_labels)
+    labels = (str(image_label.label) for image_label in image_labels)
     seen = next((label for label in labels if label not in ("", UNKNOWN)), assumed)
     if assumed in (seen, of_run):
         return []
