@@ -160,7 +160,8 @@ def _noisy(evidence: Evidence, stamps_s: FloatArray) -> Iterator[Finding]:
             Level.NOTE,
             f"positions scatter by {sigma:.2f} m from one to the next",
             "Positions are noisy (single-point GNSS)",
-            f"State it: --position-sigma {sigma:.2f}, and choose a longer horizon",
+            f"State it: --position-sigma {sigma:.2f} and a longer --horizon (identify, compare), "
+            f"[filter] position_sigma_m = {sigma:.2f} in the file of --config (run, batch)",
         )
 
 
