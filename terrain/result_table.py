@@ -13,6 +13,7 @@ from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
+from odometry.run import UNKNOWN
 from terrain.evaluated import is_used_by_filter
 from terrain.evaluation_notes import advice, filter_table, remarks, verdict
 from terrain.label_confusion import label_confusion_table
@@ -100,6 +101,11 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),
         "switches": _switches(result),
         "missed_changes": _missed_changes(result),
+        "unknown_in_force": [
+            {"from_s": of.start_s, "to_s": of.end_s}
+            for of in result.in_force
+            if of.terrain == UNKNOWN
+        ],
         "contradictions": contradiction_lines(result),
         "sightings": image_label_counts(result),
         "other_odometry": sorted(of.stem for of in result.run.folder.glob("other_odometry/*.csv")),

@@ -3,14 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import pairwise
 
 from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score
-from odometry.evaluation.stretches import stretches
+from odometry.evaluation.stretches import Stretch, stretches
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.run import UNKNOWN, Run
 from odometry.trajectory import Trajectory
 from terrain.config import Config
 from terrain.contradictions_so_far import Contradiction
@@ -157,8 +158,24 @@ class RunResult:
         """Every change of the terrain in force, in order of time."""
         if self.watcher is not None:
             return tuple(self.watcher.events)
-        found = stretches(self.replay.stamps_s, self.replay.terrains)
-        return tuple(TerrainChange(of.terrain, of.start_s) for of in found[1:])
+        return tuple(TerrainChange(of.terrain, of.start_s) for of in self.in_force[1:])
+
+    @property
+    def in_force(self) -> tuple[Stretch, ...]:
+        """Stretches of the terrain in force; `unknown` where for long no label supported it."""
+        return stretches(self.replay.stamps_s, self.replay.terrains)
+
+    @property
+    def changes_and_unknown(self) -> tuple[SwitchEvent | TerrainChange, ...]:
+        """`changes`, and where the terrain in force became `unknown` or was supported again."""
+        if self.watcher is None:
+            return self.changes
+        found, known = list(self.changes), self.initial_terrain
+        for before, of in pairwise(self.in_force):
+            known = known if before.terrain == UNKNOWN else before.terrain
+            if of.terrain == UNKNOWN or (before.terrain == UNKNOWN and of.terrain == known):
+                found.append(TerrainChange(of.terrain, of.start_s))
+        return tuple(sorted(found, key=lambda change: change.stamp_s))
 
     @property
     def effects(self) -> dict[str, list[str]]:

@@ -62,10 +62,9 @@ def print_changes(result: "RunResult") -> None:
     if result.source == "none":
         return
     began_s = result.run.began_s
-    shown = [
-        f"from {of.stamp_s - began_s:.1f} s {of.terrain}" for of in result.changes[:MOST_CHANGES]
-    ]
-    more = len(result.changes) - len(shown)
+    changes = result.changes_and_unknown
+    shown = [f"from {of.stamp_s - began_s:.1f} s {of.terrain}" for of in changes[:MOST_CHANGES]]
+    more = len(changes) - len(shown)
     rest = [f"{more} more changes, see terrain.csv"] if more else []
     click.echo(f"Terrain in force: {', '.join([result.initial_terrain, *shown, *rest])}")
     if shown and began_s:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from odometry.evaluation.stretches import Stretch, stretches
+from odometry.evaluation.stretches import Stretch
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
 from odometry.report.labels import broken_at_outages
@@ -27,7 +27,7 @@ Tints = dict[str, str]
 
 def in_force(result: RunResult) -> tuple[Stretch, ...]:
     """Stretches of the terrain in force."""
-    return stretches(result.replay.stamps_s, result.replay.terrains)
+    return result.in_force
 
 
 def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:

@@ -117,25 +117,27 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
 
 
 def switch_table(result: RunResult) -> Grid | None:
-    """Every change of the terrain in force, then the true changes that were missed."""
-    delays = switch_delays(result)
-    if not delays:
+    """Changes of the terrain in force, `unknown` as well, then true changes that were missed."""
+    delays, changes = switch_delays(result), result.changes_and_unknown
+    if not delays and not changes:
         return None
-    known = bool(true_stretches(result))
-    changes = result.changes
+    known, began_s = bool(true_stretches(result)), result.run.began_s
+    late = {
+        (of.stamp_s, of.terrain): delay for of, delay in zip(result.changes, delays, strict=False)
+    }
     header = ("terrain", "first label [s]", "then ahead [m]", "in force [s]")
     rows = [
         (
             change.terrain,
-            *_sight(change, result.run.began_s),
-            f"{change.stamp_s - result.run.began_s:.2f}",
-            *(_against_truth(delay, result.run.began_s) if known else ()),
+            *_sight(change, began_s),
+            f"{change.stamp_s - began_s:.2f}",
+            *(_against_truth(late.get((change.stamp_s, change.terrain)), began_s) if known else ()),
         )
-        for change, delay in zip(changes, delays, strict=False)
+        for change in changes
     ]
     rows += [
-        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d, result.run.began_s))
-        for d in delays[len(changes) :]
+        (d.terrain, "missed", *[NOTHING] * 2, *_against_truth(d, began_s))
+        for d in delays[len(result.changes) :]
     ]
     truth = ("truly from [s]", "late by [s]", "late by [m]")
     return Grid((*header, *truth) if known else header, rows)
@@ -218,7 +220,9 @@ def _true_icrs(result: RunResult, terrain: str) -> list[str]:
     )
 
 
-def _against_truth(delay: SwitchDelay, began_s: float) -> tuple[str, str, str]:
+def _against_truth(delay: SwitchDelay | None, began_s: float) -> tuple[str, str, str]:
+    if delay is None:  # the terrain became unknown, or was known again: no truth is about that
+        return NOTHING, NOTHING, NOTHING
     true_s = None if delay.true_s is None else delay.true_s - began_s
     return number(true_s, 2), number(delay.late_s, 2), number(delay.late_m, 2)
 

@@ -66,7 +66,9 @@ def test_images_are_counted_by_what_they_said(capsys):
 def told(stamps_s, source="labels"):
     changes = [TerrainChange(f"t{k}", stamp_s) for k, stamp_s in enumerate(stamps_s)]
     run = SimpleNamespace(began_s=0.0)
-    return SimpleNamespace(source=source, initial_terrain="ice", changes=changes, run=run)
+    return SimpleNamespace(
+        source=source, initial_terrain="ice", changes_and_unknown=changes, run=run
+    )
 
 
 def test_the_terrain_in_force_is_printed_with_its_times(capsys):
