@@ -118,7 +118,7 @@ def identify(
     from odometry.identification.profile import with_profiles
     from odometry.identification.start import SolverConfig
     from odometry.parameters import read_parameters, write_parameters
-    from terrain.cli.outputs import comment
+    from terrain.cli.outputs import WHOLE, comment
     from terrain.cli.recordings import read_runs
 
     require_model(model)
@@ -143,6 +143,7 @@ def identify(
     print_identification(found)
     identified, not_recommended = warned(found.to_parameter_set())
     write_parameters(out, identified, comment(made))
+    WHOLE.append(out)
     click.echo(f"Wrote {out}")
     if picture is not None:
         draw(picture, runs, found, terrain)

@@ -6,10 +6,14 @@ import sys
 from difflib import get_close_matches
 from keyword import iskeyword
 from types import FrameType
+from typing import TYPE_CHECKING
 
 import click
 
 from odometry.errors import OdometryError
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 VERBS = {
     "import": "Make a run folder from bags of ROS 1 or ROS 2.",
@@ -94,6 +98,7 @@ def main() -> None:
     a request to terminate.
     """
     raise_on_signals(signal.SIGINT, signal.SIGTERM)
+    _written().clear()  # of an earlier call in this process
     try:
         cli()
     except Interrupted as error:
@@ -105,6 +110,12 @@ def main() -> None:
     except MemoryError as error:
         click.echo(f"Error: there is not enough memory for this input: {error}", err=True)
         sys.exit(1)
+
+
+def _written() -> "list[Path]":
+    """What commands have written to its end; nothing where their module was never loaded."""
+    outputs = sys.modules.get("terrain.cli.outputs")
+    return [] if outputs is None else outputs.WHOLE
 
 
 class Interrupted(BaseException):
@@ -120,8 +131,7 @@ class Interrupted(BaseException):
     @property
     def left(self) -> str:
         """What was written, by those who were writing and those who had written."""
-        outputs = sys.modules.get("terrain.cli.outputs")  # not loaded: nothing was written
-        whole = dict.fromkeys(outputs.WHOLE if outputs is not None else [])
+        whole = dict.fromkeys(_written())
         said = [f"{out} was written and is whole; only what follows it is missing" for out in whole]
         return "; ".join([*getattr(self, "__notes__", []), *said]) or "nothing was written"
 

@@ -30,7 +30,7 @@ def folder_names(folders: Sequence[Path], taken: Iterable[str] = ()) -> list[str
     return names
 
 
-WHOLE: list[Path] = []  # folders that this process has written to their end
+WHOLE: list[Path] = []  # folders and files that this process has written to their end
 OUTPUTS = ("out", "picture", "ros")  # options that name what a command writes
 NO_MATTER = (*OUTPUTS, "processes", "scheduler")  # where it is written, and who computes it
 

@@ -123,7 +123,7 @@ def train(
     from terrain.classification.model_file import is_model
     from terrain.classification.photo_faults import look_alikes
     from terrain.classification.training import train as train_classifier
-    from terrain.cli.outputs import claim_file
+    from terrain.cli.outputs import WHOLE, claim_file
     from terrain.cli.train_text import (
         claim_reliability_picture,
         summary,
@@ -191,6 +191,7 @@ def train(
             f"Features: {features.described}. The model holds this part of the network.", err=True
         )
     classifier.save(out, made.to_table())
+    WHOLE.append(out)
     if hasattr(classifier, "cross_validation_"):  # a model that was kept as it is has none
         click.echo(summary(classifier, loaded))
     write_reliability_picture(picture, classifier, loaded)

@@ -1,9 +1,12 @@
 """`identify --picture`: drawn beside the parameter set, which stands without it."""
 
+import signal
+
 import pytest
 
 from odometry.errors import OdometryError
 from odometry.positions import heading
+from terrain.cli.main import Interrupted
 from tests.terrain.cli.identify_calls import SHORT
 
 
@@ -49,3 +52,16 @@ def test_a_picture_that_cannot_be_drawn_costs_no_parameters(
     assert f"Wrote {command.out}" in output
     assert f"Wrote {picture}" not in output
     assert not picture.exists()
+
+
+def test_an_interrupt_while_it_is_drawn_says_that_the_set_is_written(
+    command, curvy_run, tmp_path, monkeypatch
+):
+    def stop(_):
+        raise Interrupted(signal.SIGINT)
+
+    monkeypatch.setattr(heading, "headed", stop)
+    code, _, messages = command(curvy_run, *SHORT, "--picture", tmp_path / "icrs.png")
+    assert code == 130
+    assert f"Interrupted: {command.out} was written and is whole" in messages
+    assert command.out.is_file()
