@@ -163,7 +163,7 @@ def read_export_source(
     check_format(file, content.get("format", RESULT_FORMAT), RESULT_FORMAT, ExportError)
     changes = changes_of(path)
     if changes.lost:
-        raise ExportError("; ".join(changes.lost))
+        raise ExportError(f"{'; '.join(changes.lost)}. `run` again")
     learned = path / "learned.toml"
     parameters = read_parameters(learned) if learned.exists() else ParameterSet()
     robot = content.get("robot", {})

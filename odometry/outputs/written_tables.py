@@ -101,7 +101,7 @@ def _lost(file: Path, lines: int, written: int) -> str:
 
 
 def _said(file: Path, rows: int, wanted: int, where: str) -> str:
-    return f"{file} has {rows} rows, and {wanted} {where}: rows are lost. `run` again"
+    return f"{file} has {rows} rows, and {wanted} {where}: rows are lost"
 
 
 def _rows(file: Path, lines: int) -> int:

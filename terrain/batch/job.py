@@ -10,6 +10,7 @@ from odometry.errors import OdometryError
 from odometry.outputs.manifest import FINISHED, Manifest, check_finished, read_manifest
 from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Asked, Made
+from odometry.outputs.written_tables import changes_of
 from terrain.checks.recording import checked_run
 from terrain.one_thread import one_thread
 from terrain.results import write_run
@@ -77,9 +78,13 @@ def run_job(job: Job) -> Outcome:
         made = job.asked.made(with_images=job.options.reads_images)
         earlier = read_manifest(job.out)
         if earlier is not None and earlier.verb == VERB and _is_whole(earlier, job.out):
-            if earlier.made.get("identity") == made.identity:
+            changes = changes_of(job.out)
+            if earlier.made.get("identity") != made.identity:
+                said = what_differs(earlier.made, made)
+            elif changes.lost or changes.edited:
+                said = (*changes.lost, *changes.edited)[0]
+            else:
                 return Outcome(job, KEPT, "", made.inputs)
-            said = what_differs(earlier.made, made)
         with one_thread():
             _replay(job, made)
     except (OdometryError, OSError, MemoryError) as error:

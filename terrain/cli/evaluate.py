@@ -90,7 +90,7 @@ def _read(folder: Path, given: Mapping[str, Path], axes: str, times: Path | None
         found = read_errors(folder)
         changes = changes_of(folder)
         if changes.lost:
-            return {"error": "; ".join(changes.lost)}
+            return {"error": f"{'; '.join(changes.lost)}. `run` again"}
         run_path = found["run_path"]
         others = other_errors(folder, given, run_path=run_path, axes=axes, times=times)
     except OdometryError as error:

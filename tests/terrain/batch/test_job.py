@@ -44,6 +44,20 @@ def test_a_result_without_a_file_is_not_whole(done):
     assert (done.out / "odometer.tum").is_file()
 
 
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [(lambda text: text[: len(text) // 2], "rows are lost"), (lambda text: text + "9\n", "edited")],
+)
+def test_a_result_that_was_cut_or_edited_is_made_again_and_it_is_said(done, edit, words):
+    table = done.out / "estimate.csv"
+    before = table.read_text()
+    table.write_text(edit(before))
+    outcome = run_job(done)
+    assert outcome.state == REPLAYED
+    assert words in outcome.said
+    assert table.read_text() == before
+
+
 def test_an_unfinished_result_is_not_whole(done):
     manifest = read_manifest(done.out)
     Manifest("run", "unfinished", manifest.files).write(done.out)
