@@ -69,8 +69,9 @@ def run_odometry(
     model : TerrainClassifier or path, optional
         Without a model images are not used.
     parameters : ParameterSet or path, optional
-        A terrain without a table starts from a broad prior centred on the track width. Effects
-        of a table act on that terrain; those on the measurement must be the same everywhere.
+        A terrain without a table starts from a broad prior round the mean of the others, or
+        round the track width where there are none. Effects of a table act on that terrain;
+        those on the measurement must be the same everywhere.
     vision : bool
         False reads no image: without another `source` one terrain is in force for the whole run.
     terrain : str, optional

@@ -29,7 +29,7 @@ class IcrEkf:
     Parameters
     ----------
     track_width : float
-        [m]; the broad prior of a terrain without a table is centred on it.
+        [m]; the broad prior is centred on it where no terrain has a table.
     parameters : ParameterSet
         ICRs by terrain.
     config : IcrEkfConfig

@@ -148,7 +148,10 @@ def prior_belief(
     reset_sigma_m: float,
     reset_sigma_alpha: float,
 ) -> IcrBelief:
-    """ICRs of a terrain from its table, or a broad prior centred on the track width.
+    """ICRs of a terrain from its table, or a broad prior.
+
+    The prior is centred on the mean of the terrains that have a table: a robot that drags its
+    treads turns wider than its track on all of them. Without any it is centred on the track width.
 
     Parameters
     ----------
@@ -167,14 +170,29 @@ def prior_belief(
     """
     table = parameters.terrains.get(terrain)
     if table is None:
-        icrs = np.array([track_width / 2, -track_width / 2, 0.0])
-        return IcrBelief(icrs, np.ones(2), _broad(track_width, reset_sigma_alpha > 0))
+        icrs, alphas = _of_other_terrains(parameters, track_width)
+        return IcrBelief(icrs, alphas, _broad(track_width, reset_sigma_alpha > 0))
     form = icr_form(table, f"[terrain.{terrain}]")
     unstated = np.array([reset_sigma_m] * 3 + [reset_sigma_alpha] * 2)
     covariance = _covariance(table, form, unstated)
     if reset_sigma_alpha == 0:
         covariance[3:], covariance[:, 3:] = 0.0, 0.0
     return IcrBelief(form.icrs, form.alphas, covariance)
+
+
+def _of_other_terrains(
+    parameters: ParameterSet, track_width: float
+) -> tuple[FloatArray, FloatArray]:
+    """Mean ICRs (3,) and slip factors (2,) of the terrains that have some."""
+    forms = [
+        icr_form(table, f"[terrain.{name}]")
+        for name, table in parameters.terrains.items()
+        if table.model in ICR_FORM_MODELS
+    ]
+    if not forms:
+        return np.array([track_width / 2, -track_width / 2, 0.0]), np.ones(2)
+    icrs, alphas = zip(*((form.icrs, form.alphas) for form in forms), strict=True)
+    return np.mean(icrs, axis=0), np.mean(alphas, axis=0)
 
 
 def _broad(track_width: float, slips: bool) -> FloatArray:

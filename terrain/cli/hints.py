@@ -42,7 +42,8 @@ def hints(result: RunResult, *, vision: bool, named: str | None = None) -> list[
         found.append("the run has images, but there is no vision without --model")
     if result.watcher is not None and known:
         found += [
-            f"the model knows {name!r}, the parameter set does not: it starts from a broad prior"
+            f"the model knows {name!r}, the parameter set does not: it starts from a broad prior "
+            "round the mean of the terrains that it knows"
             for name in sorted(set(map(str, result.watcher.classifier.classes_)) - set(known))
         ]
     if result.watcher is not None:

@@ -31,9 +31,13 @@ def test_a_switch_takes_the_table_and_resets_exactly_the_icr_block():
 
 
 def test_a_switch_to_a_terrain_without_a_table_takes_the_broad_prior():
-    ekf = filter_of(terrains={"a": table(0.4, -0.4, 0)})
+    """Round the mean of the terrains with a table; without any round the ideal drive."""
+    ekf = filter_of(terrains={"a": table(0.4, -0.4, 0), "b": table(0.3, -0.35, 0.1)})
     _, after = switched(ekf, driven(ekf), "c")
-    np.testing.assert_allclose(after.mean[3:6], [WIDTH / 2, -WIDTH / 2, 0])
+    np.testing.assert_allclose(after.mean[3:6], [0.35, -0.375, 0.05])
+    alone = filter_of(terrains={})
+    _, ideal = switched(alone, driven(alone), "c")
+    np.testing.assert_allclose(ideal.mean[3:6], [WIDTH / 2, -WIDTH / 2, 0])
     np.testing.assert_allclose(after.covariance[3:6, 3:6], (WIDTH / 2) ** 2 * np.eye(3))
 
 
