@@ -2,13 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
+from odometry.bags.choice_notes import equal_topics, reference_notes, wheel_notes
 from odometry.bags.message_fields import (
     FIX,
     IMAGES,
     IMU,
-    NO_WHEELS,
     POINT,
     POSES,
     TRANSFORM_LISTS,
@@ -17,24 +16,18 @@ from odometry.bags.message_fields import (
 from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
 from odometry.bags.survey import Survey
 from odometry.bags.topic import Topic
-from odometry.bags.topic_guess import LIKELY, best, guess
 from odometry.bags.topic_roles import (
     TopicMap,
     camera_info_of,
     clock_of,
     other_odometry_of,
     topic_for,
-    topic_named,
 )
+from odometry.bags.wheel_choice import wheel_topic
 from odometry.bags.wheel_source import WheelSource, wheel_source
 from odometry.errors import BagError
 
 REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)
-NO_SPEEDS = (
-    "the bag has no wheel speeds, which a run needs: only messages of poses, frames, images or "
-    "inertial sensors. Record joint states or wheel odometry as well; poses alone can be added to "
-    "a run that is there: terrain-odometry import RUN --pose FILE (TUM, KITTI, EuRoC)"
-)
 
 
 @dataclass(frozen=True)
@@ -83,35 +76,41 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         If there are no wheel speeds, a number of the robot is missing, or the user names a topic
         that is not there or of another kind: it says what to give.
     """
-    topics = survey.topics
-    reference = topic_for(topics, topic_map.reference, "reference", REFERENCES)
+    everything = survey.topics
+    taken = wheel_topic(everything, topic_map.wheels, topic_map.reference)
+    topics = everything
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
     robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies))
-    wheels = _wheels(topics, topic_map.wheels, reference, robot)
+    wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)
     separation = topic_map.wheels.get("separation", robot.track_width_m)
     if robot.track_width_m is None:
         raise BagError(
             "the track width of the robot is not known, and no robot description in the bag gives "
             f"it: add --track-width METRES. To measure it, {HOW_TRACK}"
         )
-    world = _world(topics, topic_map, reference, survey)
-    imu = topic_for(topics, topic_map.imu, "imu", (IMU,))
-    images = topic_for(topics, topic_map.images, "images", IMAGES)
-    info = camera_info_of(topics, topic_map.images, images)
+    reference = _reference(everything, topics, topic_map, taken)
+    world = _world(everything, topic_map, reference, survey)
+    imu = topic_for(everything, topic_map.imu, "imu", (IMU,), topics)
+    images = topic_for(everything, topic_map.images, "images", IMAGES, topics)
+    info = camera_info_of(everything, topic_map.images, images)
     named = {imu: topic_map.imu, reference: topic_map.reference, images: topic_map.images}
     frames = {
-        name: str(said.get("frame") or _frame_of(topics[name], robot)).lstrip("/")
+        name: str(said.get("frame") or _frame_of(everything[name], robot)).lstrip("/")
         for name, said in named.items()
         if name
     }
-    other = other_odometry_of(topics, topic_map.other_odometry, reference)
-    used = [topics[name] for name in (wheels.topic, imu, reference, images) if name]
+    other = other_odometry_of(everything, topic_map.other_odometry, reference, topics)
+    used = [everything[name] for name in (wheels.topic, imu, reference, images) if name]
     by_header, said = clock_of(used, topic_map.time)
+    by_role = {"imu": imu, "reference": reference, "images": images}
     notes = [
         *robot.notes,
         f"wheel speeds: {wheels.topic}: {wheels.why}",
-        *(f"{role}: {name}" for role, name in _named(imu, reference, images, info) if name),
+        *(f"{role}: {name}" for role, name in {**by_role, "camera": info}.items() if name),
         *said,
+        *wheel_notes(everything, topic_map.wheels, taken),
+        *reference_notes(everything, topic_map.reference, reference),
+        *equal_topics(topics, topic_map, {"wheels": taken, **by_role}),
         *_no_reference(topics, topic_map, reference, survey),
     ]
     return Plan(
@@ -128,6 +127,14 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         tuple(notes),
         frames,
     )
+
+
+def _reference(
+    everything: Mapping[str, Topic], own: Mapping[str, Topic], topic_map: TopicMap, wheels: str
+) -> str:
+    """Topic of the reference; one that is guessed is not that of the wheels."""
+    others = {name: topic for name, topic in own.items() if name != wheels}
+    return topic_for(everything, topic_map.reference, "reference", REFERENCES, others)
 
 
 def _world(topics: Mapping[str, Topic], topic_map: TopicMap, reference: str, survey: Survey) -> str:
@@ -166,30 +173,3 @@ def _no_reference(
         )
     else:
         yield "reference: none; the run has no pose.csv"
-
-
-def _named(imu: str, reference: str, images: str, info: str) -> list[tuple[str, str]]:
-    return [("imu", imu), ("reference", reference), ("images", images), ("camera", info)]
-
-
-def _wheels(
-    topics: Mapping[str, Topic], topic_map: Mapping[str, Any], reference: str, robot: RobotFrame
-) -> WheelSource:
-    named = topic_map.get("topic")
-    left = {name: topic for name, topic in topics.items() if name != reference}
-    name = topic_named(topics, named).name if named else best(left, "wheels")
-    if name is None:
-        near = [
-            f"{name} ({topic.message_type}: {one.why})"
-            for name, topic in left.items()
-            for one in guess(topic)
-            if one.rank >= LIKELY
-        ]
-        if not near and all(topic.message_type in NO_WHEELS for topic in topics.values()):
-            raise BagError(NO_SPEEDS)
-        seen = f"; perhaps one of {', '.join(near)}" if near else ""
-        raise BagError(
-            f"no topic is known to hold measured wheel speeds{seen}. Name it with --wheels TOPIC; "
-            "--list shows all topics"
-        )
-    return wheel_source(topics[name], topic_map, robot.wheel_radius_m)

@@ -72,9 +72,11 @@ def _values(message: Any) -> Iterator[tuple[str, str, float]]:
     if hasattr(message, "twist"):
         twist, place = message.twist.twist, message.pose.pose.position
         yield VELOCITY, "ahead", twist.linear.x
+        yield VELOCITY, "side", twist.linear.y
         yield VELOCITY, "turn", twist.angular.z
         yield PLACE, "x", place.x
         yield PLACE, "y", place.y
+        yield PLACE, "z", place.z
         return
     for name, value in zip(message.name, message.velocity, strict=False):
         yield VELOCITY, name, float(value)

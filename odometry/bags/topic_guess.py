@@ -18,6 +18,17 @@ from odometry.bags.message_fields import (
     TWISTS,
     number_paths,
 )
+from odometry.bags.odometry_kinds import (
+    FUSED,
+    LIDAR,
+    NAMES,
+    SATELLITES,
+    TRUTH,
+    UNKNOWN,
+    VISUAL,
+    WHEELS,
+    kind_of,
+)
 from odometry.bags.topic import Topic
 from odometry.bags.wheel_names import side_of, sided
 
@@ -25,14 +36,6 @@ COMMANDS = re.compile(
     r"cmd|command|goal|target|setpoint|set_point|plan|desired|waypoint|initialpose|joy|teleop",
     re.IGNORECASE,
 )
-TRUTH = re.compile(
-    r"truth|mocap|vicon|optitrack|qualisys|vrpn|rtk|total_station|prism|leica|natnet", re.IGNORECASE
-)
-LOCALISED = re.compile(
-    r"slam|lio|loam|icp|lidar|laser|gps|gnss|utm|map|amcl|cartographer|visual|vins|orb|global",
-    re.IGNORECASE,
-)
-FUSED = re.compile(r"filter|ekf|ukf|fus|estimat|local_?iz", re.IGNORECASE)
 NO_COLOUR = re.compile(
     r"depth|infra|(^|[/_])ir([/_]|$)|thermal|disparity|mask|debug", re.IGNORECASE
 )
@@ -66,6 +69,9 @@ class Guess(NamedTuple):
 
 
 LIKELY = 100
+GUESSED = 50  # wheels that nothing tells from another odometry: the last to be taken, with a note
+# Poses of satellites alone have the ranks 30 and 35: visual odometry drifts, they do not
+REFERENCE_RANKS = {TRUTH: 2, LIDAR: 15, SATELLITES: 15, VISUAL: 45}
 
 
 def guess(topic: Topic) -> list[Guess]:
@@ -78,23 +84,28 @@ def guess(topic: Topic) -> list[Guess]:
     if kind in _BY_TYPE:
         return _BY_TYPE[kind](topic)
     if kind in POSES:
-        rank = 1 if TRUTH.search(name) else 20 if FUSED.search(name) else 10
+        rank = 1 if NAMES[TRUTH].search(name) else 20 if NAMES[FUSED].search(name) else 10
         return [Guess("reference", rank, "poses")]
     if kind in TWISTS:
-        rank = 40 if SPEEDS.search(name) or "odom" in name else LIKELY + 1
-        return [Guess("wheels", rank, "a measured twist")]
+        return _twist(topic)
     return _fields(topic)
 
 
 def best(topics: Mapping[str, Topic], role: str) -> str | None:
     """Name of the topic that fits a role best; None where none is likely to."""
-    ranked = [
+    names = candidates(topics, role)
+    return names[0] if names else None
+
+
+def candidates(topics: Mapping[str, Topic], role: str) -> list[str]:
+    """Names of the topics that fit a role best, that of most messages first; equals otherwise."""
+    ranked = sorted(
         (one.rank, -topic.count, name)
         for name, topic in topics.items()
         for one in guess(topic)
         if one.role == role and one.rank < LIKELY
-    ]
-    return min(ranked)[2] if ranked else None
+    )
+    return [name for rank, _, name in ranked if rank == ranked[0][0]]
 
 
 def _joints(topic: Topic) -> list[Guess]:
@@ -116,13 +127,27 @@ def _images(topic: Topic) -> list[Guess]:
 
 
 def _odometry(topic: Topic) -> list[Guess]:
-    if TRUTH.search(topic.name):
-        return [Guess("reference", 2, "poses"), Guess("other_odometry", 50, "")]
-    if LOCALISED.search(topic.name):
-        return [Guess("reference", 15, "poses"), Guess("other_odometry", 50, "")]
-    rank = 60 if FUSED.search(topic.name) else 30
-    why = "a fused odometry" if rank == 60 else "wheel odometry by its name"
-    return [Guess("wheels", rank, why), Guess("other_odometry", 1, "kept beside the run")]
+    kind = kind_of(topic)
+    if kind.name in REFERENCE_RANKS:
+        why = f"{kind.name}, by {kind.sign}"
+        rank = REFERENCE_RANKS[kind.name]
+        return [Guess("reference", rank, why), Guess("other_odometry", 50, "")]
+    kept = Guess("other_odometry", 1, "kept beside the run")
+    if kind.name == FUSED:
+        return [kept, Guess("", LIKELY + 1, f"{kind.name}, by {kind.sign}; not of the wheels")]
+    if kind.name == UNKNOWN:
+        return [Guess("wheels", GUESSED, "odometry; nothing says that it is of the wheels"), kept]
+    return [Guess("wheels", 30, "wheel odometry by its name"), kept]
+
+
+def _twist(topic: Topic) -> list[Guess]:
+    kind = kind_of(topic)
+    if not kind.of_wheels:
+        return [Guess("", LIKELY + 1, f"a twist of {kind.name}, by {kind.sign}")]
+    if kind.name == WHEELS:
+        return [Guess("wheels", 40, "a measured twist")]
+    rank = GUESSED if SPEEDS.search(topic.name) or "odom" in topic.name else LIKELY + 1
+    return [Guess("wheels", rank, "a twist; nothing says that it is of the wheels")]
 
 
 def _fields(topic: Topic) -> list[Guess]:
@@ -155,7 +180,9 @@ _BY_TYPE: dict[str, Callable[[Topic], list[Guess]]] = {
     JOINTS: _joints,
     IMU: lambda topic: [Guess("imu", 1 + ("raw" in topic.name), "")],
     FIX: lambda _: [Guess("reference", 30, "positions by satellites")],
-    POINT: lambda topic: [Guess("reference", 3 if TRUTH.search(topic.name) else 35, "positions")],
+    POINT: lambda topic: [
+        Guess("reference", 3 if NAMES[TRUTH].search(topic.name) else 35, "positions")
+    ],
     CAMERA_INFO: lambda _: [Guess("camera_info", 1, "")],
     IMAGE: _images,
     COMPRESSED_IMAGE: _images,

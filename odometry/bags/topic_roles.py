@@ -127,12 +127,16 @@ SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less s
 
 
 def topic_for(
-    topics: Mapping[str, Topic], topic_map: Mapping[str, Any], role: str, kinds: tuple[str, ...]
+    topics: Mapping[str, Topic],
+    topic_map: Mapping[str, Any],
+    role: str,
+    kinds: tuple[str, ...],
+    guessed_from: Mapping[str, Topic],
 ) -> str:
     """Name of the topic for a role; empty where there is none, or none is wanted."""
     said = topic_map.get("topic")
     if said is None:
-        return best(topics, role) or ""
+        return best(guessed_from, role) or ""
     if said == NONE:
         return ""
     topic = topic_named(topics, said)
@@ -172,7 +176,10 @@ def camera_info_of(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], im
 
 
 def other_odometry_of(
-    topics: Mapping[str, Topic], said: tuple[str, ...] | None, reference: str
+    topics: Mapping[str, Topic],
+    said: tuple[str, ...] | None,
+    reference: str,
+    guessed_from: Mapping[str, Topic],
 ) -> tuple[str, ...]:
     """Topics whose poses are kept beside the run."""
     if said is not None:
@@ -183,7 +190,7 @@ def other_odometry_of(
         return tuple(topic.name for topic in names)
     return tuple(
         name
-        for name, topic in topics.items()
+        for name, topic in guessed_from.items()
         if name != reference and any(one.role == "other_odometry" for one in guess(topic))
     )
 

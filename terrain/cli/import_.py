@@ -166,10 +166,11 @@ def _value(name: str, said: Any) -> Any:
 def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.message_fields import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
-    from odometry.bags.plan import NO_SPEEDS, make_plan
+    from odometry.bags.plan import make_plan
     from odometry.bags.survey import topic_lines
     from odometry.bags.topic_guess import best
     from odometry.bags.topic_roles import TopicMap
+    from odometry.bags.wheel_choice import NO_SPEEDS
     from odometry.errors import BagError
 
     found = _surveyed(bags, MessageTypes())

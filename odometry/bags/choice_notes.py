@@ -1,0 +1,66 @@
+"""What is said of topics that were guessed: by which sign, and which others fit as well."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from odometry.bags.message_fields import ODOMETRY, TWISTS
+from odometry.bags.odometry_kinds import UNKNOWN, VISUAL, kind_of, no_wheels_move
+from odometry.bags.topic import Topic
+from odometry.bags.topic_guess import candidates
+from odometry.bags.topic_roles import TopicMap
+
+MOST_NAMED = 6  # topics in a sentence
+
+
+def wheel_notes(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str) -> list[str]:
+    """What is to be said of the topic that was taken as wheel speeds."""
+    topic = topics[taken]
+    if topic.message_type not in TWISTS:
+        return []
+    kind = kind_of(topic)
+    if not kind.of_wheels:
+        return [
+            f"wheel speeds: {taken} looks like {kind.name} by {kind.sign}, which shows no slip of "
+            "the treads; it is taken as it was named"
+        ]
+    if kind.name == UNKNOWN and "topic" not in topic_map:
+        return [
+            f"wheel speeds: that {taken} is of the wheels is a guess: nothing in its name says so. "
+            "If it is not (a camera, a lidar or a filter made it), name the right one with --wheels"
+        ]
+    if moves := no_wheels_move(topic):
+        return [
+            f"wheel speeds: {taken} is no plain wheel odometry by {moves}: its twist may be that "
+            "of the world's axes, or of a filter. Check it, or name another with --wheels"
+        ]
+    return []
+
+
+def reference_notes(
+    topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str
+) -> list[str]:
+    """What is to be said of the topic that was guessed to be the reference."""
+    if not taken or "topic" in topic_map or topics[taken].message_type != ODOMETRY:
+        return []
+    if kind_of(topics[taken]).name != VISUAL:
+        return []
+    return [
+        f"reference: {taken} is visual odometry, which drifts: it serves over some metres, not for "
+        "the end of a drive (--reference none leaves it out)"
+    ]
+
+
+def equal_topics(
+    topics: Mapping[str, Topic], topic_map: TopicMap, taken: Mapping[str, str]
+) -> Iterator[str]:
+    """That other topics fit as well as those that were guessed; `taken` is by role."""
+    for role, name in taken.items():
+        equal = candidates(topics, role)
+        others = [other for other in equal if other != name]
+        if not others or name not in equal or "topic" in getattr(topic_map, role):
+            continue
+        more = ", ..." if len(others) > MOST_NAMED else ""
+        yield (
+            f"{role}: {', '.join(others[:MOST_NAMED])}{more} would fit as well as {name}; "
+            f"--{role} {others[0]} takes that one"
+        )
