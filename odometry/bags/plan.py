@@ -14,6 +14,7 @@ from odometry.bags.message_fields import (
     body_frame,
 )
 from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
+from odometry.bags.robots import own_topics
 from odometry.bags.survey import Survey
 from odometry.bags.topic import Topic
 from odometry.bags.topic_roles import (
@@ -78,9 +79,10 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
     """
     everything = survey.topics
     taken = wheel_topic(everything, topic_map.wheels, topic_map.reference)
-    topics = everything
+    own = own_topics(everything, taken)
+    topics = own.topics
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
-    robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies))
+    robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies), own.robot)
     wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)
     separation = topic_map.wheels.get("separation", robot.track_width_m)
     if robot.track_width_m is None:
@@ -108,6 +110,7 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         f"wheel speeds: {wheels.topic}: {wheels.why}",
         *(f"{role}: {name}" for role, name in {**by_role, "camera": info}.items() if name),
         *said,
+        *own.notes,
         *wheel_notes(everything, topic_map.wheels, taken),
         *reference_notes(everything, topic_map.reference, reference),
         *equal_topics(topics, topic_map, {"wheels": taken, **by_role}),

@@ -62,7 +62,10 @@ class RobotFrame:
 
 
 def robot_frame(
-    robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[str]
+    robot: RobotMessages,
+    topic_map: Mapping[str, Any],
+    bodies: Iterable[str],
+    prefix: str = "",
 ) -> RobotFrame:
     """Find the robot frame and the robot's size.
 
@@ -74,13 +77,15 @@ def robot_frame(
     bodies : of str
         Frames whose motion odometry topics hold: where names do not give the base frame, one of
         these is it.
+    prefix : str
+        Where there are several robots: what frames of this one begin with.
 
     Raises
     ------
     BagError
         If the map names a frame that the bag does not have.
     """
-    base = _base(robot, topic_map, bodies)
+    base = _base(robot, topic_map, bodies, prefix)
     centres = _wheel_centres(robot, base)
     notes = []
     radius, track = topic_map.get("wheel_radius"), topic_map.get("track_width")
@@ -110,7 +115,9 @@ def robot_frame(
     )
 
 
-def _base(robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[str]) -> str:
+def _base(
+    robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[str], prefix: str
+) -> str:
     frames = robot.all.frames
     if "frame" in topic_map:
         named = str(topic_map["frame"]).lstrip("/")
@@ -123,7 +130,8 @@ def _base(robot: RobotMessages, topic_map: Mapping[str, Any], bodies: Iterable[s
     for name in BASES:
         found = sorted(f for f in frames if re.fullmatch(rf"(.*[/_])?{name}", f))
         if found:
-            return found[0]
+            own = [f for f in found if prefix and re.match(rf"{re.escape(prefix)}[/_]", f)]
+            return (own or found)[0]
     return next((body for body in bodies if body in frames), "")
 
 

@@ -11,6 +11,7 @@ from odometry.bags.damage import Losses
 from odometry.bags.message_fields import IMAGES, JOINTS, TRANSFORM_LISTS
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.robot_messages import ROBOT_TYPES, TEXT, RobotMessages
+from odometry.bags.robots import own_topics
 from odometry.bags.topic import MOVING_TYPES, Connection, Message, Ranges, Topic, header_ns, widen
 from odometry.bags.topic_guess import best, guess
 from odometry.bags.wheel_names import sided
@@ -177,7 +178,9 @@ ROLES = ("wheels", "imu", "reference", "images")
 
 def topic_lines(survey: Survey) -> Iterator[str]:
     """A line a topic; an asterisk marks what an import takes by itself."""
-    taken = {best(survey.topics, role) for role in ROLES}
+    wheels = best(survey.topics, "wheels")
+    topics = own_topics(survey.topics, wheels).topics if wheels else survey.topics
+    taken = {best(topics, role) for role in ROLES}
     rows = [
         (
             "*" if name in taken else "",
