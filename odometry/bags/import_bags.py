@@ -14,8 +14,8 @@ from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import Attitudes, LocalMetres
 from odometry.bags.run_settings import run_settings
-from odometry.bags.speeds import FASTEST_M_S
-from odometry.bags.streams import Stream, make_streams
+from odometry.bags.speeds import FASTEST_M_S, TreadSpeeds
+from odometry.bags.streams import Learned, Stream, make_streams
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.topic import Connection, Message
 from odometry.errors import BagError
@@ -62,11 +62,11 @@ def write_run(
     Raises
     ------
     BagError
-        If there is no row of wheel speeds in the end.
+        If there is no row of wheel speeds in the end, or wheels of a side contradict each other.
     """
-    local = LocalMetres()
+    local, speeds = LocalMetres(), TreadSpeeds(plan.wheels, plan.separation_m)
     with closing(Attitudes(_robot_from_imu(plan, survey))) as attitudes:
-        streams = make_streams(plan, survey, folder, local, attitudes)
+        streams = make_streams(plan, survey, folder, Learned(speeds, local, attitudes))
         for file in survey.files:
             _read(file.messages(Losses()), streams, types, progress)
         made = [one for several in streams.values() for one in several]
@@ -76,11 +76,12 @@ def write_run(
         if not (folder / "odometry.csv").exists():
             said = "; ".join((*losses, *_too_fast(plan)))
             raise BagError(f"no wheel speed could be read: {said}")
+        of_wheels = speeds.agreement.verdict()
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
-    return Imported(rows, (*plan.notes, *notes, *of_attitudes), losses)
+    return Imported(rows, (*plan.notes, *of_wheels, *notes, *of_attitudes), losses)
 
 
 def _too_fast(plan: Plan) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.bags.message_fields import TWISTS, number_at
+from odometry.bags.side_agreement import SideAgreement
 from odometry.bags.wheel_source import WheelSource
 from odometry.errors import BagError
 from odometry.geometry.angles import wrap
@@ -66,12 +67,18 @@ class TreadSpeeds:
 
     A difference of two places is the speed from the stamp of the first on, as a speed of
     odometry.csv holds until the next stamp.
+
+    Attributes
+    ----------
+    agreement : SideAgreement
+        Whether the wheels of each side, whose mean is taken, agree.
     """
 
     def __init__(self, source: WheelSource, separation_m: float) -> None:
         self._source = source
         self._separation_m = separation_m
         self._held: tuple[IntArray, FloatArray] | None = None
+        self.agreement = SideAgreement(source)
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Stamps (M,) and tread speeds (M, 2) of rows (N, k)."""
@@ -84,12 +91,10 @@ class TreadSpeeds:
             speeds = np.column_stack([left, source.right_factor * right])
         else:
             count = len(source.left)
-            speeds = np.column_stack(
-                [
-                    source.left_factor * rows[:, :count].mean(axis=1),
-                    source.right_factor * rows[:, count:].mean(axis=1),
-                ]
-            )
+            left = source.left_factor * rows[:, :count]
+            right = source.right_factor * rows[:, count:]
+            self.agreement.add(stamps_ns, np.hstack([left, right]))
+            speeds = np.column_stack([left.mean(axis=1), right.mean(axis=1)])
         return stamps_ns, np.where(np.abs(speeds) <= FASTEST_M_S, speeds, np.nan)
 
     def _differences(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:

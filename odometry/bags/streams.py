@@ -4,6 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -120,16 +121,35 @@ IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
 OTHER = "other_odometry"
 
 
+@dataclass(frozen=True)
+class Learned:
+    """What streams learn on their way.
+
+    Attributes
+    ----------
+    speeds : TreadSpeeds
+        Whether the wheels of a side agree.
+    local : LocalMetres
+        The origin of satellite fixes.
+    attitudes : Attitudes
+        Those of the robot.
+    """
+
+    speeds: TreadSpeeds
+    local: LocalMetres
+    attitudes: Attitudes
+
+
 def make_streams(
-    plan: Plan, survey: Survey, folder: Path, local: LocalMetres, attitudes: Attitudes
+    plan: Plan, survey: Survey, folder: Path, learned: Learned
 ) -> dict[str, list[Stream]]:
-    """Streams by topic; `local` learns the origin of satellite fixes, `attitudes` the robot's."""
+    """Streams by topic, which fill what is learned."""
     streams: dict[str, list[Stream]] = {}
-    made: list[Stream] = [_wheels(plan, survey, folder)]
+    made: list[Stream] = [_wheels(plan, survey, folder, learned.speeds)]
     if plan.imu:
-        made.append(_imu(plan, survey, folder, attitudes))
+        made.append(_imu(plan, survey, folder, learned.attitudes))
     if plan.reference:
-        made.append(_reference(plan, survey, folder, local))
+        made.append(_reference(plan, survey, folder, learned.local))
     if plan.images:
         made.append(Images(plan.images, ImageFiles(folder), by_header=plan.by_header))
     made += [_other(topic, plan, survey, folder) for topic in plan.other_odometry]
@@ -138,9 +158,8 @@ def make_streams(
     return streams
 
 
-def _wheels(plan: Plan, survey: Survey, folder: Path) -> Stream:
+def _wheels(plan: Plan, survey: Survey, folder: Path, speeds: TreadSpeeds) -> Stream:
     source = plan.wheels
-    speeds = TreadSpeeds(source, plan.separation_m)
     rows = OrderedRows(folder / "odometry.csv", ("v_left", "v_right"), speeds, 2)
     read = row_reader(source, survey.topics[source.topic].message_type)
     return Rows(source.topic, "odometry.csv", rows, read, by_header=plan.by_header)

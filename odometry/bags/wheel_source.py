@@ -10,12 +10,12 @@ from odometry.bags.message_fields import (
     NO_WHEELS,
     ODOMETRY,
     TWISTS,
-    number_at,
     number_paths,
 )
 from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
-from odometry.bags.topic_guess import SIMPLE_ARRAY, unit_of
-from odometry.bags.wheel_names import UNITS, check_unit, gear_of, side_of, sided
+from odometry.bags.topic_guess import unit_of
+from odometry.bags.wheel_names import UNITS, check_unit, gear_of
+from odometry.bags.wheel_sides import dead_joints, sides_of
 from odometry.errors import BagError
 
 HOW_RADIUS = (
@@ -45,6 +45,8 @@ class WheelSource:
         In a sentence.
     unit : str
         Of the numbers, one of UNITS; "" of a twist.
+    stated : bool
+        Whether the user says which wheels are left and right.
     """
 
     topic: str
@@ -57,6 +59,7 @@ class WheelSource:
     wraps_at: float = math.inf
     why: str = ""
     unit: str = ""
+    stated: bool = False
 
 
 def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | None) -> WheelSource:
@@ -86,10 +89,13 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
     if topic.message_type in TWISTS:
         return _twist(topic, topic_map)
     joints = topic.message_type == JOINTS
-    left, right = _sides(topic, topic_map, list(topic.sample.name) if joints else None)
+    left, right = sides_of(topic, topic_map, list(topic.sample.name) if joints else None)
     speeds, unit = (
         _joint_values(topic, topic_map, left + right) if joints else _unit(topic, topic_map)
     )
+    stated = "left" in topic_map
+    dead = [] if stated else dead_joints(topic, (left, right), VELOCITY if speeds else PLACE)
+    left, right = (tuple(one for one in side if one not in dead) for side in (left, right))
     one, of_angle, is_speed = UNITS[unit]
     if of_angle and radius_m is None:
         raise BagError(
@@ -109,8 +115,9 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
         is_speed,
         _wrap(topic, left + right, one) if joints and not speeds else math.inf,
         f"{'speeds' if is_speed else 'differences of places'} of {', '.join(left)} (left) and "
-        f"{', '.join(right)} (right) in {unit}",
+        f"{', '.join(right)} (right) in {unit}{_left_out(dead)}",
         unit,
+        stated,
     )
 
 
@@ -125,46 +132,13 @@ def _twist(topic: Topic, topic_map: Mapping[str, Any]) -> WheelSource:
     return WheelSource(topic.name, "twist", (), (), *signs, speeds=not by_pose, why=why)
 
 
-def _sides(
-    topic: Topic, topic_map: Mapping[str, Any], joints: list[str] | None
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names of joints, or paths, of the left and of the right wheels."""
-    if ("left" in topic_map) != ("right" in topic_map):
-        raise BagError(f"{topic.name}: left and right wheels belong together; give both")
-    array = SIMPLE_ARRAY.match(topic.message_type) is not None
-    if "left" in topic_map:
-        left, right = (tuple(map(str, topic_map[side])) for side in ("left", "right"))
-        if array:
-            left, right = (tuple(_in_array(one) for one in side) for side in (left, right))
-        _check_there(topic, left + right, joints)
-        if both := sorted(set(left) & set(right)):
-            raise BagError(f"{topic.name}: {', '.join(both)} is said to be left and right")
-    elif joints is not None:
-        left, right = sided(joints)
-    elif array:
-        pair = len(topic.sample.data) == 2
-        left, right = (("data[0]",), ("data[1]",)) if pair else ((), ())
-    else:
-        left, right = sided(path for path in number_paths(topic.sample) if side_of(path))
-    if not left or not right:
-        seen = joints if joints is not None else list(number_paths(topic.sample))
-        raise BagError(
-            f"{topic.name}: which are the wheels of the left and of the right side? Seen: "
-            f"{', '.join(seen[:24])}. Give --left and --right, several separated by commas"
-        )
-    return left, right
-
-
-def _in_array(place: str) -> str:
-    return f"data[{place}]" if place.lstrip("-").isdigit() else place
-
-
-def _check_there(topic: Topic, names: tuple[str, ...], joints: list[str] | None) -> None:
-    for name in names:
-        if joints is None:
-            number_at(name)(topic.sample)
-        elif name not in joints:
-            raise BagError(f"{topic.name}: there is no joint {name!r}; found: {', '.join(joints)}")
+def _left_out(dead: list[str]) -> str:
+    if not dead:
+        return ""
+    return (
+        f". Left out: {', '.join(dead)}, at zero all the time while the others of its side move "
+        "(a dead encoder, or a number that is not filled in; --left and --right take what you say)"
+    )
 
 
 def _joint_values(
