@@ -10,9 +10,10 @@ import tomli_w
 
 from odometry.arrays import FloatArray
 from odometry.bags.damage import Losses
+from odometry.bags.fix_rows import LocalMetres
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
-from odometry.bags.pose_rows import Attitudes, LocalMetres
+from odometry.bags.pose_rows import Attitudes
 from odometry.bags.run_settings import run_settings
 from odometry.bags.speeds import FASTEST_M_S, TreadSpeeds
 from odometry.bags.streams import Learned, Stream, make_streams

@@ -9,7 +9,7 @@ import re
 from typing import NamedTuple
 
 from odometry.bags.message_fields import ODOMETRY, body_frame
-from odometry.bags.topic import PLACE, VELOCITY, Topic
+from odometry.bags.topic import PLACE, VELOCITY, Topic, farthest
 
 WHEELS, VISUAL, LIDAR, SATELLITES, FUSED, TRUTH, UNKNOWN = (
     "wheel odometry",
@@ -120,7 +120,7 @@ def kind_of_name(name: str) -> str:
 
 def no_wheels_move(topic: Topic) -> str:
     """A motion that no odometry of skid-steer wheels has; empty where it has none."""
-    side = max(map(abs, topic.ranges.get((VELOCITY, "side"), (0.0, 0.0))))
+    side = farthest(topic.ranges, VELOCITY, ["side"])
     if side > SIDEWAYS_M_S:
         return f"its sideways speed, up to {side:.2g} m/s"
     least, most = topic.ranges.get((PLACE, "z"), (0.0, 0.0))

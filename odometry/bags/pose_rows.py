@@ -1,4 +1,4 @@
-"""Rows of pose.csv: poses, transforms and satellite fixes, roll and pitch of Imu messages."""
+"""Rows of pose.csv: poses and positions; roll and pitch of Imu messages."""
 
 import math
 import tempfile
@@ -11,7 +11,6 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.bags.message_fields import POSES
-from odometry.errors import BagError
 from odometry.geometry import se3
 from odometry.io.files import naming_temporary
 
@@ -161,19 +160,6 @@ class PosesOfRobot:
         return stamps_ns, np.where(valid[:, None], columns, np.nan)
 
 
-def fix_row(message: Any) -> Row:
-    """Latitude and longitude [degrees] and altitude [m] of a NavSatFix.
-
-    Raises
-    ------
-    BagError
-        If it says that there was no fix.
-    """
-    if message.status.status < 0 or not np.isfinite([message.latitude, message.longitude]).all():
-        raise BagError("no fix")
-    return message.latitude, message.longitude, message.altitude
-
-
 def point_row(message: Any) -> Row:
     """x, y, z [m] of a PointStamped."""
     return message.point.x, message.point.y, message.point.z
@@ -182,26 +168,6 @@ def point_row(message: Any) -> Row:
 def positions_alone(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
     """Columns (N, 4): x, y, yaw (NaN), z of positions (N, 3)."""
     return stamps_ns, np.insert(rows, 2, np.nan, axis=1)
-
-
-class LocalMetres:
-    """Turns geodetic places into metres east, north and up of the first one."""
-
-    def __init__(self) -> None:
-        self.origin: tuple[float, float, float] | None = None
-
-    def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Columns (N, 4): x (east), y (north), yaw (NaN), z (up)."""
-        from pymap3d import geodetic2enu  # noqa: PLC0415 - only bags with fixes need it
-
-        if not len(rows):
-            return stamps_ns, np.empty((0, 4))
-        if self.origin is None:
-            latitude, longitude, altitude = rows[0].tolist()
-            self.origin = latitude, longitude, altitude if np.isfinite(altitude) else 0.0
-        altitudes = np.where(np.isfinite(rows[:, 2]), rows[:, 2], self.origin[2])
-        east, north, up = geodetic2enu(rows[:, 0], rows[:, 1], altitudes, *self.origin)
-        return stamps_ns, np.column_stack([east, north, np.full(len(rows), np.nan), up])
 
 
 def rotations_of(quaternions_wxyz: FloatArray) -> tuple[FloatArray, BoolArray]:

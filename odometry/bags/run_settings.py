@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.bags.fix_rows import LocalMetres
 from odometry.bags.message_fields import FIX, body_frame
 from odometry.bags.plan import Plan
-from odometry.bags.pose_rows import LocalMetres
 from odometry.bags.robot_frame import HOW_HEIGHT
 from odometry.bags.survey import Survey
 from odometry.bags.topic_guess import RECTIFIED

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.bags.fix_rows import LocalMetres, fix_reader
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
@@ -19,16 +20,14 @@ from odometry.bags.pose_rows import (
     POSE_COLUMNS,
     Attitudes,
     AttitudesOf,
-    LocalMetres,
     PosesOfRobot,
-    fix_row,
     point_row,
     pose_reader,
     positions_alone,
 )
 from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.survey import Survey
-from odometry.bags.topic import Message, header_ns
+from odometry.bags.topic import PLACE, Message, farthest, header_ns
 from odometry.bags.transforms import TransformPoses
 from odometry.errors import BagError
 
@@ -197,7 +196,8 @@ def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> 
     topic, file = survey.topics[plan.reference], folder / "pose.csv"
     if topic.message_type == FIX:
         rows = OrderedRows(file, ("x", "y", "yaw", "z"), local, 2)
-        return Rows(topic.name, "pose.csv", rows, fix_row, by_header=plan.by_header)
+        read = fix_reader(farthest(topic.ranges, PLACE, ["latitude", "longitude"]))
+        return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
     if topic.message_type == POINT:
         rows = OrderedRows(file, ("x", "y", "yaw", "z"), positions_alone, 2)
         return Rows(topic.name, "pose.csv", rows, point_row, by_header=plan.by_header)

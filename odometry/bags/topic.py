@@ -1,7 +1,7 @@
 """A topic of a bag: how the bag describes it, its messages, and a summary of them."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -50,12 +50,16 @@ def ros2_name(message_type: str) -> str:
 
 
 VELOCITY, PLACE = "velocity", "place"
-MOVING_TYPES = ("sensor_msgs/msg/JointState", "nav_msgs/msg/Odometry")
+MOVING_TYPES = (
+    "sensor_msgs/msg/JointState",
+    "nav_msgs/msg/Odometry",
+    "sensor_msgs/msg/NavSatFix",
+)
 Ranges = dict[tuple[str, str], tuple[float, float]]
 
 
 def widen(ranges: Ranges, message: Any) -> None:
-    """Widen the ranges of velocities and places by those of a joint state or an odometry."""
+    """Widen the ranges of velocities and places by a joint state, odometry or fix."""
     for kind, name, value in _values(message):
         if math.isfinite(value):
             least, most = ranges.get((kind, name), (value, value))
@@ -68,6 +72,12 @@ def moved(ranges: Ranges, kind: str, name: str) -> bool:
     return least != most or (kind == VELOCITY and least != 0)
 
 
+def farthest(ranges: Ranges, kind: str, names: Iterable[str]) -> float:
+    """Largest absolute value of these names; 0 where there is none."""
+    ends = (abs(end) for name in names for end in ranges.get((kind, name), (0.0, 0.0)))
+    return max(ends, default=0.0)
+
+
 def _values(message: Any) -> Iterator[tuple[str, str, float]]:
     if hasattr(message, "twist"):
         twist, place = message.twist.twist, message.pose.pose.position
@@ -77,6 +87,11 @@ def _values(message: Any) -> Iterator[tuple[str, str, float]]:
         yield PLACE, "x", place.x
         yield PLACE, "y", place.y
         yield PLACE, "z", place.z
+        return
+    if hasattr(message, "latitude"):
+        if message.status.status >= 0:
+            yield PLACE, "latitude", message.latitude
+            yield PLACE, "longitude", message.longitude
         return
     for name, value in zip(message.name, message.velocity, strict=False):
         yield VELOCITY, name, float(value)

@@ -143,11 +143,11 @@ class Bag:
         message = self.message("tf2_msgs/msg/TFMessage", transforms=transforms)
         self.add(topic, "tf2_msgs/msg/TFMessage", t_s, message)
 
-    def fix(self, t_s: float, *place: float, status: int = 0) -> None:
+    def fix(self, t_s: float, *place: float, status: int = 0, frame: str = "gps_link") -> None:
         latitude, longitude, altitude = place
         message = self.message(
             "sensor_msgs/msg/NavSatFix",
-            header=self.header(t_s, "gps_link"),
+            header=self.header(t_s, frame),
             status=self.message("sensor_msgs/msg/NavSatStatus", status=status, service=1),
             latitude=latitude,
             longitude=longitude,

@@ -1,0 +1,58 @@
+"""Satellite fixes that are none, or of two receivers."""
+
+import numpy as np
+import pytest
+
+from tests.odometry.bags.imports import imported
+from tests.odometry.bags.made_bags import RADIUS_M, Bag, course
+
+NORTH_DEG = 1 / 111_200  # of a metre, about 48 N
+
+
+def drive():
+    """A bag with wheels alone."""
+    bag = Bag("mcap")
+    for t_s, left, right, *_ in course(10.0):
+        rates = [left / RADIUS_M, right / RADIUS_M]
+        bag.joints(t_s, ["left_wheel", "right_wheel"], np.zeros(2), rates)
+    return bag
+
+
+@pytest.mark.parametrize("zeros", [range(5), range(40, 60)])
+def test_zeros_of_a_receiver_without_a_fix_are_no_place(zeros, tmp_path):
+    bag = drive()
+    for number in range(100):
+        place = (0.0, 0.0, 0.0) if number in zeros else (48 + number * NORTH_DEG, 11.0, 500.0)
+        bag.fix(number / 10, *place)
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert run.settings["source"]["origin"]["longitude"] == 11.0
+    assert np.abs(run.pose["y"]).max() < 101
+    assert len(run.pose) == 100 - len(zeros)
+    words = f"{len(zeros)} messages dropped: no fix (latitude and longitude are zero)"
+    assert any(words in line for line in said.losses)
+
+
+def test_a_robot_on_the_equator_keeps_its_fixes(tmp_path):
+    bag = drive()
+    for number in range(100):
+        bag.fix(number / 10, 0.0, 11 + number * NORTH_DEG, 0.0)
+    run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert len(run.pose) == 100
+
+
+def test_a_simulated_robot_at_zero_keeps_its_fixes(tmp_path):
+    bag = drive()
+    for number in range(100):
+        bag.fix(number / 10, number * NORTH_DEG, 0.0, 0.0)
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert len(run.pose) == 100
+    assert not said.losses
+
+
+def test_zeros_alone_are_no_reference(tmp_path):
+    bag = drive()
+    for number in range(100):
+        bag.fix(number / 10, 0.0, 0.0, 0.0)
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert not (run.folder / "pose.csv").exists()
+    assert any("100 messages dropped: no fix" in line for line in said.losses)
