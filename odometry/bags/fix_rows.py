@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.bags.message_fields import body_frame
+from odometry.bags.topic import PLACE, Topic, farthest
 from odometry.errors import BagError
 
 # A receiver without a fix writes zeros, or nearly so; a robot that was ever a degree away from
@@ -14,13 +16,15 @@ NEAR_ZERO_DEG, FAR_DEG = 1e-3, 1.0
 Row = tuple[float, ...]
 
 
-def fix_reader(farthest_deg: float) -> Callable[[Any], Row]:
+def fix_reader(topic: Topic, antenna: str) -> Callable[[Any], Row]:
     """A function that takes latitude, longitude [degrees] and altitude [m] out of a NavSatFix.
 
-    It raises BagError where there was no fix: the message says so, or has no numbers, or zeros.
-    `farthest_deg` is the largest latitude or longitude of the bag: zeros are a place where the
+    It raises BagError where there was no fix (the message says so, or has no numbers, or zeros),
+    and where it is of another antenna than the one of this frame. Zeros are a place where the
     robot is near 0 N, 0 E all the time, as in some simulations.
     """
+    taken = antenna if antenna in topic.frames else body_frame(topic.sample)
+    farthest_deg = farthest(topic.ranges, PLACE, ["latitude", "longitude"])
     zeros_deg = NEAR_ZERO_DEG if farthest_deg > FAR_DEG or farthest_deg == 0 else -1.0
 
     def read(message: Any) -> Row:
@@ -29,6 +33,11 @@ def fix_reader(farthest_deg: float) -> Callable[[Any], Row]:
             raise BagError("no fix")
         if (np.abs(place) <= zeros_deg).all():
             raise BagError("no fix (latitude and longitude are zero)")
+        if (frame := body_frame(message)) != taken:
+            raise BagError(
+                f"of {frame or 'no frame'}, another receiver on this topic; {taken or 'no frame'} "
+                "is taken (frame of [reference] in a map says which)"
+            )
         return message.latitude, message.longitude, message.altitude
 
     return read

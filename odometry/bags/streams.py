@@ -27,7 +27,7 @@ from odometry.bags.pose_rows import (
 )
 from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.survey import Survey
-from odometry.bags.topic import PLACE, Message, farthest, header_ns
+from odometry.bags.topic import Message, header_ns
 from odometry.bags.transforms import TransformPoses
 from odometry.errors import BagError
 
@@ -196,7 +196,7 @@ def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> 
     topic, file = survey.topics[plan.reference], folder / "pose.csv"
     if topic.message_type == FIX:
         rows = OrderedRows(file, ("x", "y", "yaw", "z"), local, 2)
-        read = fix_reader(farthest(topic.ranges, PLACE, ["latitude", "longitude"]))
+        read = fix_reader(topic, plan.frames.get(topic.name, ""))
         return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
     if topic.message_type == POINT:
         rows = OrderedRows(file, ("x", "y", "yaw", "z"), positions_alone, 2)

@@ -1,6 +1,6 @@
-"""What bags hold, also as lines of text: topics, frames of the robot, what cannot be read."""
+"""What bags hold: topics, frames of the robot, what cannot be read."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 from types import SimpleNamespace
@@ -8,12 +8,10 @@ from typing import Any
 
 from odometry.bags.bag_files import BagFile
 from odometry.bags.damage import Losses
-from odometry.bags.message_fields import IMAGES, JOINTS, TRANSFORM_LISTS
+from odometry.bags.message_fields import FIX, IMAGES, JOINTS, body_frame
 from odometry.bags.message_types import MessageTypes
-from odometry.bags.robot_messages import ROBOT_TYPES, TEXT, RobotMessages
-from odometry.bags.robots import own_topics
+from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
 from odometry.bags.topic import MOVING_TYPES, Connection, Message, Ranges, Topic, header_ns, widen
-from odometry.bags.topic_guess import best, guess
 from odometry.bags.wheel_names import sided
 from odometry.errors import BagError
 
@@ -32,6 +30,7 @@ class Tally:
         self.offsets_s: list[float] = []
         self.ranges: Ranges = {}
         self.problem = ""
+        self.frames: dict[str, None] = {}
         self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
 
@@ -52,6 +51,8 @@ class Tally:
             robot.add(message, content)
         if self.tells_motion:
             widen(self.ranges, content)
+        if self.connection.message_type == FIX:
+            self.frames[body_frame(content)] = None
         stamp_ns = header_ns(content)
         if stamp_ns:
             self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
@@ -82,6 +83,7 @@ class Tally:
             median(self.offsets_s) if self.offsets_s else None,
             self.ranges,
             self.problem if self.sample is None else "",
+            tuple(self.frames),
         )
 
 
@@ -171,41 +173,3 @@ def _tally(connection: Connection, tallies: dict[str, Tally], losses: Losses) ->
         )
         return None
     return tally
-
-
-ROLES = ("wheels", "imu", "reference", "images")
-
-
-def topic_lines(survey: Survey) -> Iterator[str]:
-    """A line a topic; an asterisk marks what an import takes by itself."""
-    wheels = best(survey.topics, "wheels")
-    topics = own_topics(survey.topics, wheels).topics if wheels else survey.topics
-    taken = {best(topics, role) for role in ROLES}
-    rows = [
-        (
-            "*" if name in taken else "",
-            name,
-            topic.message_type,
-            str(topic.count),
-            f"{topic.rate_hz:.4g} Hz",
-            f"{topic.duration_s:.1f} s",
-            said_of(topic),
-        )
-        for name, topic in survey.topics.items()
-    ]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        yield "  ".join(cells).rstrip()
-
-
-def said_of(topic: Topic) -> str:
-    """What a topic is probably used for, or why it cannot be read."""
-    if topic.problem:
-        return f"cannot be read: {topic.problem}"
-    if topic.message_type in TRANSFORM_LISTS:
-        return "frames of the robot"
-    if topic.message_type == TEXT and "<robot" in topic.sample.data:
-        return "robot description"
-    guesses = sorted(guess(topic), key=lambda one: one.rank)
-    return "; ".join(": ".join(filter(None, (one.role, one.why))) for one in guesses)

@@ -117,6 +117,8 @@ class Topic:
         Smallest and largest value of the motion fields, see `motion_ranges`.
     problem : str
         Why it cannot be read; empty where it can.
+    frames : tuple of str
+        Frames that its satellite fixes name: of several receivers there are several.
     """
 
     name: str
@@ -128,6 +130,7 @@ class Topic:
     header_offset_s: float | None = None
     ranges: Ranges = field(default_factory=dict)
     problem: str = ""
+    frames: tuple[str, ...] = ()
 
     @property
     def duration_s(self) -> float:

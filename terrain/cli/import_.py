@@ -167,8 +167,8 @@ def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.message_fields import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
     from odometry.bags.plan import make_plan
-    from odometry.bags.survey import topic_lines
     from odometry.bags.topic_guess import best
+    from odometry.bags.topic_list import topic_lines
     from odometry.bags.topic_roles import TopicMap
     from odometry.bags.wheel_choice import NO_SPEEDS
     from odometry.errors import BagError

@@ -56,3 +56,33 @@ def test_zeros_alone_are_no_reference(tmp_path):
     run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
     assert not (run.folder / "pose.csv").exists()
     assert any("100 messages dropped: no fix" in line for line in said.losses)
+
+
+def two_receivers():
+    """The antenna on the right is a metre north of the left one; the first fix is none."""
+    bag = drive()
+    bag.fix(0.01, 0.5, 0.5, 0.0, status=-1, frame="gps_left")
+    for number in range(100):
+        frame, ahead = ("gps_left", 0) if number % 2 == 0 else ("gps_right", 1)
+        bag.fix(0.02 + number / 10, 48 + (number + ahead) * NORTH_DEG, 11.0, 500.0, frame=frame)
+    return bag
+
+
+@pytest.mark.parametrize(("said", "other"), [("gps_left", "gps_right"), ("gps_right", "gps_left")])
+def test_of_two_receivers_on_a_topic_one_is_taken(said, other, tmp_path):
+    options = {} if said == "gps_left" else {"reference__frame": said}
+    run, told = imported(tmp_path / "run", two_receivers().write(tmp_path / "drive"), **options)
+    assert len(run.pose) == 50
+    assert np.diff(run.pose["y"]) == pytest.approx(2, abs=0.01)
+    words = f"50 messages dropped: of {other}, another receiver on this topic; {said} is taken"
+    assert any(words in line for line in told.losses)
+
+
+def test_a_frame_that_no_fix_names_is_the_antenna_of_all(tmp_path):
+    bag = drive()
+    for number in range(100):
+        bag.fix(number / 10, 48 + number * NORTH_DEG, 11.0, 500.0)
+    path = bag.write(tmp_path / "drive")
+    run, told = imported(tmp_path / "run", path, reference__frame="mast")
+    assert len(run.pose) == 100
+    assert not told.losses
