@@ -11,12 +11,14 @@ import tomli_w
 from odometry.arrays import FloatArray
 from odometry.bags.damage import Losses
 from odometry.bags.fix_rows import LocalMetres
+from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import Attitudes
 from odometry.bags.run_settings import run_settings
+from odometry.bags.run_streams import Learned, make_streams
 from odometry.bags.speeds import FASTEST_M_S, TreadSpeeds
-from odometry.bags.streams import Learned, Stream, make_streams
+from odometry.bags.streams import Consumer, Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.topic import Connection, Message
 from odometry.errors import BagError
@@ -67,10 +69,12 @@ def write_run(
     """
     local, speeds = LocalMetres(), TreadSpeeds(plan.wheels, plan.separation_m)
     with closing(Attitudes(_robot_from_imu(plan, survey))) as attitudes:
-        streams = make_streams(plan, survey, folder, Learned(speeds, local, attitudes))
+        lens = LensWatch(plan.camera_info)
+        streams = make_streams(plan, survey, folder, Learned(speeds, local, attitudes, lens))
         for file in survey.files:
             _read(file.messages(Losses()), streams, types, progress)
-        made = [one for several in streams.values() for one in several]
+        every = [one for several in streams.values() for one in several]
+        made = [one for one in every if isinstance(one, Stream)]
         for stream in made:
             stream.sink.close()
         losses = (*survey.losses, *(line for stream in made for line in lost_of(stream)))
@@ -82,7 +86,7 @@ def write_run(
     settings, notes = run_settings(plan, survey, local, losses)
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
-    return Imported(rows, (*plan.notes, *of_wheels, *notes, *of_attitudes), losses)
+    return Imported(rows, (*plan.notes, *of_wheels, *notes, *lens.notes(), *of_attitudes), losses)
 
 
 def _too_fast(plan: Plan) -> list[str]:
@@ -110,11 +114,11 @@ def _attitudes_added(attitudes: Attitudes, topic: str, folder: Path) -> list[str
 
 def _read(
     messages: Iterator[Message],
-    streams: dict[str, list[Stream]],
+    streams: dict[str, list[Consumer]],
     types: MessageTypes,
     progress: Progress,
 ) -> None:
-    wanted: dict[int, tuple[Connection, list[Stream]]] = {}
+    wanted: dict[int, tuple[Connection, list[Consumer]]] = {}
     count = 0
     for message in messages:
         count += 1

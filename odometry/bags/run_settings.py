@@ -1,11 +1,11 @@
-"""run.toml of an imported bag, with its table [camera]."""
+"""run.toml of an imported bag."""
 
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.bags.camera_info import camera_table, looks_along_z
 from odometry.bags.fix_rows import LocalMetres
 from odometry.bags.message_fields import FIX, body_frame
 from odometry.bags.plan import Plan
@@ -13,7 +13,7 @@ from odometry.bags.robot_frame import HOW_HEIGHT
 from odometry.bags.survey import Survey
 from odometry.bags.topic_guess import RECTIFIED
 from odometry.geometry import se3
-from odometry.geometry.se3 import OPTICAL_FROM_CAMERA, mount_of_optical
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 
 HOW_MOUNT = (
     "Or find the mount: terrain-odometry camera RUN --from-motion --out camera --write; or give it "
@@ -134,72 +134,3 @@ def _source(
         latitude, longitude, altitude = local.origin
         source["origin"] = {"latitude": latitude, "longitude": longitude, "altitude": altitude}
     return source
-
-
-MODELS = ("plumb_bob", "rational_polynomial", "")
-STEEP = 0.5  # sine of 30 degrees
-COUNTS = (0, 4, 5, 8, 12, 14)  # of coefficients that OpenCV knows
-
-
-def camera_table(
-    info: Any, robot_from_optical: FloatArray | None, *, rectified: bool
-) -> tuple[dict[str, Any], list[str]]:
-    """The table, without `mount` where that is not known, and what is to be said of it.
-
-    Parameters
-    ----------
-    info : CameraInfo
-        Of either version of ROS.
-    robot_from_optical : (4, 4) or None
-        Pose of the optical frame (x right, y down, z along the view) in the robot frame.
-    rectified : bool
-        Whether the images are rectified: then P is their matrix, and they have no distortion.
-    """
-    values = {key: _numbers(info, key) for key in ("k", "d", "p")}
-    matrix, distortion = values["k"].reshape(3, 3), values["d"]
-    if rectified:
-        matrix, distortion = values["p"].reshape(3, 4)[:, :3], np.zeros(0)
-    if not matrix[0, 0] > 0:
-        return {}, ["camera: its CameraInfo is not calibrated (the matrix is zero)"]
-    if info.distortion_model not in MODELS or len(distortion) not in COUNTS:
-        return {}, [
-            f"camera: the distortion model {info.distortion_model!r} with {len(distortion)} "
-            "coefficients is none of OpenCV's order; rectify the images, or calibrate the camera"
-        ]
-    matrix, size = _of_region(info, matrix)
-    table: dict[str, Any] = {
-        "image_size": size,
-        "matrix": matrix.tolist(),
-        "distortion": distortion.tolist() if np.any(distortion) else [],
-    }
-    if robot_from_optical is not None:
-        table["mount"] = list(mount_of_optical(robot_from_optical))
-    return table, []
-
-
-def looks_along_z(robot_from_frame: FloatArray) -> bool:
-    """Whether a frame may be an optical one: its z axis points no higher than its x axis.
-
-    Some drivers name the frame of the camera's body, x ahead and z upwards, in their images.
-    """
-    up = robot_from_frame[2, :3]  # the height of each axis
-    return bool(up[2] < STEEP or up[0] > STEEP)
-
-
-def _numbers(info: Any, key: str) -> FloatArray:
-    """Numbers of a field, which ROS 1 writes as a capital letter."""
-    values = getattr(info, key, None)
-    return np.asarray(getattr(info, key.upper()) if values is None else values, dtype=np.float64)
-
-
-def _of_region(info: Any, matrix: FloatArray) -> tuple[FloatArray, list[int]]:
-    """Matrix and size of the images as sent: cut to the region of interest, then binned."""
-    roi = info.roi
-    width, height = roi.width or info.width, roi.height or info.height
-    moved = matrix.copy()
-    moved[:2, 2] -= [roi.x_offset, roi.y_offset]
-    binning = np.array([max(1, info.binning_x), max(1, info.binning_y)])
-    # pixel 0 of the binned image is the mean of the first pixels: its centre lies between them
-    moved[:2, 2] = (moved[:2, 2] + 0.5) / binning - 0.5
-    moved[0, 0], moved[1, 1] = moved[0, 0] / binning[0], moved[1, 1] / binning[1]
-    return moved, [int(width // binning[0]), int(height // binning[1])]

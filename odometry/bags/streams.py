@@ -1,32 +1,12 @@
-"""Streams: which topic goes to which file of a run folder, and what becomes of its messages."""
+"""What becomes of the messages of a topic: rows of a file, or image files."""
 
-import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from odometry.arrays import FloatArray, IntArray
-from odometry.bags.fix_rows import LocalMetres, fix_reader
 from odometry.bags.image_files import ImageFiles
-from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
-from odometry.bags.plan import Plan
-from odometry.bags.pose_rows import (
-    POSE_COLUMNS,
-    Attitudes,
-    AttitudesOf,
-    PosesOfRobot,
-    point_row,
-    pose_reader,
-    positions_alone,
-)
-from odometry.bags.speeds import TreadSpeeds, row_reader
-from odometry.bags.survey import Survey
 from odometry.bags.topic import Message, header_ns
 from odometry.bags.transforms import TransformPoses
 from odometry.errors import BagError
@@ -34,24 +14,19 @@ from odometry.errors import BagError
 Row = tuple[float, ...]
 
 
-class Stream(ABC):
-    """Turns messages of one topic into rows, or image files.
+class Consumer(ABC):
+    """Takes in the messages of one topic.
 
     Attributes
     ----------
-    topic, file : str
-        Where it comes from, and the file of the run folder.
-    sink : OrderedRows or ImageFiles
+    topic : str
     dropped : Counter
         How many messages were dropped, by reason.
     """
 
-    def __init__(
-        self, topic: str, file: str, sink: OrderedRows | ImageFiles, *, by_header: bool
-    ) -> None:
-        self.topic, self.file, self.sink = topic, file, sink
+    def __init__(self, topic: str) -> None:
+        self.topic = topic
         self.dropped: Counter[str] = Counter()
-        self._by_header = by_header
 
     def add(self, message: Message, content: Any) -> None:
         """Take in a message; one that cannot be used is counted."""
@@ -63,6 +38,24 @@ class Stream(ABC):
     @abstractmethod
     def take(self, message: Message, content: Any) -> None:
         """Take in a message; BagError if it cannot be used."""
+
+
+class Stream(Consumer):
+    """Turns messages of one topic into rows, or image files.
+
+    Attributes
+    ----------
+    file : str
+        Of the run folder.
+    sink : OrderedRows or ImageFiles
+    """
+
+    def __init__(
+        self, topic: str, file: str, sink: OrderedRows | ImageFiles, *, by_header: bool
+    ) -> None:
+        super().__init__(topic)
+        self.file, self.sink = file, sink
+        self._by_header = by_header
 
     def stamp_ns(self, message: Message, stamped_ns: int) -> int:
         """When a message was made, or received where headers do not count or say nothing."""
@@ -114,115 +107,3 @@ class Images(Stream):
     def take(self, message: Message, content: Any) -> None:
         """Take in a message; BagError if it cannot be used."""
         self._images.add(self.stamp_ns(message, header_ns(content)), content)
-
-
-IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
-OTHER = "other_odometry"
-
-
-@dataclass(frozen=True)
-class Learned:
-    """What streams learn on their way.
-
-    Attributes
-    ----------
-    speeds : TreadSpeeds
-        Whether the wheels of a side agree.
-    local : LocalMetres
-        The origin of satellite fixes.
-    attitudes : Attitudes
-        Those of the robot.
-    """
-
-    speeds: TreadSpeeds
-    local: LocalMetres
-    attitudes: Attitudes
-
-
-def make_streams(
-    plan: Plan, survey: Survey, folder: Path, learned: Learned
-) -> dict[str, list[Stream]]:
-    """Streams by topic, which fill what is learned."""
-    streams: dict[str, list[Stream]] = {}
-    made: list[Stream] = [_wheels(plan, survey, folder, learned.speeds)]
-    if plan.imu:
-        made.append(_imu(plan, survey, folder, learned.attitudes))
-    if plan.reference:
-        made.append(_reference(plan, survey, folder, learned.local))
-    if plan.images:
-        made.append(Images(plan.images, ImageFiles(folder), by_header=plan.by_header))
-    made += [_other(topic, plan, survey, folder) for topic in plan.other_odometry]
-    for stream in made:
-        streams.setdefault(stream.topic, []).append(stream)
-    return streams
-
-
-def _wheels(plan: Plan, survey: Survey, folder: Path, speeds: TreadSpeeds) -> Stream:
-    source = plan.wheels
-    rows = OrderedRows(folder / "odometry.csv", ("v_left", "v_right"), speeds, 2)
-    read = row_reader(source, survey.topics[source.topic].message_type)
-    return Rows(source.topic, "odometry.csv", rows, read, by_header=plan.by_header)
-
-
-def _imu(plan: Plan, survey: Survey, folder: Path, attitudes: Attitudes) -> Stream:
-    sample = survey.topics[plan.imu].sample
-    # REP-145: a covariance that begins with -1 says that the sensor does not measure this
-    gyro = sample.angular_velocity_covariance[0] != -1
-    accel = sample.linear_acceleration_covariance[0] != -1
-    turned = sample.orientation_covariance[0] != -1
-    names = IMU_COLUMNS[: 3 * gyro] + IMU_COLUMNS[3 : 3 + 3 * accel]
-
-    def read(message: Any) -> tuple[float, ...]:
-        rate, force, turn = (
-            message.angular_velocity,
-            message.linear_acceleration,
-            message.orientation,
-        )
-        rates = (rate.x, rate.y, rate.z) if gyro else ()
-        forces = (force.x, force.y, force.z) if accel else ()
-        return (*rates, *forces, turn.w, turn.x, turn.y, turn.z)
-
-    def columns(stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
-        values = rows[:, : len(names)]
-        if turned:
-            attitudes.add(stamps_ns, rows[:, len(names) :], values[:, 3 * gyro :])
-        return stamps_ns, values
-
-    rows = OrderedRows(folder / "imu.csv", names, columns, 0)
-    return Rows(plan.imu, "imu.csv", rows, read, by_header=plan.by_header)
-
-
-def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> Stream:
-    topic, file = survey.topics[plan.reference], folder / "pose.csv"
-    if topic.message_type == FIX:
-        rows = OrderedRows(file, ("x", "y", "yaw", "z"), local, 2)
-        read = fix_reader(topic, plan.frames.get(topic.name, ""))
-        return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
-    if topic.message_type == POINT:
-        rows = OrderedRows(file, ("x", "y", "yaw", "z"), positions_alone, 2)
-        return Rows(topic.name, "pose.csv", rows, point_row, by_header=plan.by_header)
-    frame = plan.frames.get(topic.name, "")
-    pose = plan.robot.pose_of(frame, survey.robot)
-    turned = AttitudesOf(np.eye(4) if pose is None else pose)
-    rows = OrderedRows(file, POSE_COLUMNS, turned, 2)
-    if topic.message_type in TRANSFORM_LISTS:
-        poses = TransformPoses(plan.world, frame, survey.robot.fixed)
-        return TransformRows(topic.name, "pose.csv", rows, poses, by_header=plan.by_header)
-    read = pose_reader(topic.message_type)
-    return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
-
-
-def _other(name: str, plan: Plan, survey: Survey, folder: Path) -> Stream:
-    topic = survey.topics[name]
-    pose = plan.robot.pose_of(body_frame(topic.sample), survey.robot)
-    plain = [_plain(one) for one in plan.other_odometry]
-    again = plain[: plan.other_odometry.index(name)].count(_plain(name))
-    file = f"{OTHER}/{_plain(name)}{f'_{again + 1}' if again else ''}.csv"
-    columns = PosesOfRobot(np.eye(4) if pose is None else pose)
-    rows = OrderedRows(folder / file, ("x", "y", "yaw"), columns, 3)
-    return Rows(name, file, rows, pose_reader(topic.message_type), by_header=plan.by_header)
-
-
-def _plain(topic: str) -> str:
-    """A topic's name as that of a file."""
-    return re.sub(r"[^A-Za-z0-9.-]+", "_", topic).strip("_.") or "odometry"
