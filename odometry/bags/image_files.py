@@ -109,7 +109,10 @@ def pixels_of(message: Any) -> AnyArray:
     channels = CHANNELS.get(coding, 2 if coding in YUV else 1 if coding in BAYER else 0)
     height, width, step = message.height, message.width, message.step
     if not channels:
-        raise BagError(f"an image of the encoding {message.encoding!r}, which is not read")
+        raise BagError(
+            f"an image of the encoding {message.encoding!r}, which is not read. Convert the images "
+            "to mono8 or bgr8 (cv_bridge) and record these, or name another topic: --images"
+        )
     data = np.asarray(message.data, dtype=np.uint8)
     if not height * width or step < width * channels or len(data) < height * step:
         raise BagError(f"an image of {len(data)} bytes, expected {height} rows of {step}")

@@ -17,13 +17,14 @@ from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import Attitudes
 from odometry.bags.run_settings import run_settings
 from odometry.bags.run_streams import Learned, make_streams
-from odometry.bags.speeds import FASTEST_M_S, TreadSpeeds
+from odometry.bags.speeds import TreadSpeeds
 from odometry.bags.streams import Consumer, Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.topic import Connection, Message
 from odometry.errors import BagError
 
 MOST_REASONS = 3
+MOST_TOO_FAST = 0.1  # of differences of places; an encoder is reset far more rarely
 
 
 @dataclass(frozen=True)
@@ -77,10 +78,13 @@ def write_run(
         made = [one for one in every if isinstance(one, Stream)]
         for stream in made:
             stream.sink.close()
-        losses = (*survey.losses, *(line for stream in made for line in lost_of(stream)))
-        if not (folder / "odometry.csv").exists():
-            said = "; ".join((*losses, *_too_fast(plan)))
-            raise BagError(f"no wheel speed could be read: {said}")
+        wheels, *others = made
+        lost = [
+            *lost_of(wheels, speeds.too_fast),
+            *(line for one in others for line in lost_of(one)),
+        ]
+        losses = (*survey.losses, *speeds.lost(), *lost)
+        _check_wheels(wheels, speeds, losses, of_places=not plan.wheels.speeds)
         of_wheels = speeds.agreement.verdict()
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
@@ -89,11 +93,15 @@ def write_run(
     return Imported(rows, (*plan.notes, *of_wheels, *notes, *lens.notes(), *of_attitudes), losses)
 
 
-def _too_fast(plan: Plan) -> list[str]:
-    """What to check where no row of wheel speeds is left."""
-    unit = plan.wheels.unit
-    why = f"speeds above {FASTEST_M_S:g} m/s are left out; is the unit ({unit}) right? See --unit"
-    return [why] if unit else []
+def _check_wheels(
+    wheels: Stream, speeds: TreadSpeeds, losses: tuple[str, ...], *, of_places: bool
+) -> None:
+    """Raise BagError where no wheel speeds are left, or too few to believe the others."""
+    if not wheels.sink.written:
+        raise BagError(f"no wheel speed could be read: {'; '.join(losses)}")
+    share = speeds.too_fast / (speeds.too_fast + wheels.sink.written)
+    if of_places and share > MOST_TOO_FAST:
+        raise BagError(f"{share:.0%} of the wheel speeds are impossible. {speeds.lost()[0]}")
 
 
 def _robot_from_imu(plan: Plan, survey: Survey) -> FloatArray:
@@ -140,8 +148,11 @@ def _read(
     progress(count % REPORT_EVERY)
 
 
-def lost_of(stream: Stream) -> Iterator[str]:
-    """Sentences on messages of a topic that did not become rows; nothing where all did."""
+def lost_of(stream: Stream, said: int = 0) -> Iterator[str]:
+    """Sentences on messages of a topic that did not become rows; nothing where all did.
+
+    `said` rows without a number are reported elsewhere.
+    """
     sink, topic = stream.sink, stream.topic
     if sink.repeated:
         yield f"{topic}: {sink.repeated} messages repeat the stamp of one before; dropped"
@@ -152,7 +163,7 @@ def lost_of(stream: Stream) -> Iterator[str]:
             f"{topic}: {sink.back} messages have a stamp that goes back{how_far}; dropped "
             "(--time log takes the times at which the bag received them)"
         )
-    if incomplete := getattr(sink, "incomplete", 0):
+    if incomplete := getattr(sink, "incomplete", 0) - said:
         yield f"{topic}: {incomplete} rows lack a number that {stream.file} needs; dropped"
     reasons = stream.dropped.most_common()
     for reason, count in reasons[:MOST_REASONS]:
@@ -161,4 +172,4 @@ def lost_of(stream: Stream) -> Iterator[str]:
         rest = sum(count for _, count in reasons[MOST_REASONS:])
         yield f"{topic}: {rest} more messages dropped for other reasons"
     if not sink.written:
-        yield f"{topic}: nothing of it could be used; there is no {stream.file}"
+        yield f"{topic}: nothing of it could be used{stream.gap()}; there is no {stream.file}"

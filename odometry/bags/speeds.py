@@ -9,10 +9,12 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.bags.message_fields import TWISTS, number_at
 from odometry.bags.side_agreement import SideAgreement
+from odometry.bags.wheel_names import is_wheel, side_of
 from odometry.bags.wheel_source import WheelSource
 from odometry.errors import BagError
 from odometry.geometry.angles import wrap
 
+MOST_NAMED = 6  # wheels in a sentence
 FASTEST_M_S = 50.0  # no robot's tread is faster: an encoder was reset, or a number is broken
 Row = tuple[float, ...]
 
@@ -55,11 +57,26 @@ def _joints(source: WheelSource) -> Callable[[Any], Row]:
             places[names] = [names.index(name) for name in wanted] if there else None
         found = places[names]
         values = message.velocity if source.speeds else message.position
-        if found is None or len(values) < len(names):
-            raise BagError(f"{source.topic}: a message without all wheels")
+        if found is None:
+            raise BagError(_other_joints(names))
+        if len(values) < len(names):
+            kind = "velocities" if source.speeds else "positions"
+            raise BagError(f"a message with fewer {kind} than joints")
         return tuple(float(values[place]) for place in found)
 
     return read
+
+
+def _other_joints(names: tuple[str, ...]) -> str:
+    """Why a message without all wheels is dropped."""
+    wheels = [name for name in names if is_wheel(name) and side_of(name)]
+    if not wheels:
+        return "a message without wheels"
+    more = ", ..." if len(wheels) > MOST_NAMED else ""
+    return (
+        f"a message of other wheels ({', '.join(wheels[:MOST_NAMED])}{more}): wheels that come in "
+        "messages of their own are not put together; --left and --right choose among them"
+    )
 
 
 class TreadSpeeds:
@@ -72,6 +89,8 @@ class TreadSpeeds:
     ----------
     agreement : SideAgreement
         Whether the wheels of each side, whose mean is taken, agree.
+    too_fast : int
+        Rows with a tread faster than FASTEST_M_S, which become NaN.
     """
 
     def __init__(self, source: WheelSource, separation_m: float) -> None:
@@ -79,6 +98,7 @@ class TreadSpeeds:
         self._separation_m = separation_m
         self._held: tuple[IntArray, FloatArray] | None = None
         self.agreement = SideAgreement(source)
+        self.too_fast = 0
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Stamps (M,) and tread speeds (M, 2) of rows (N, k)."""
@@ -95,7 +115,23 @@ class TreadSpeeds:
             right = source.right_factor * rows[:, count:]
             self.agreement.add(stamps_ns, np.hstack([left, right]))
             speeds = np.column_stack([left.mean(axis=1), right.mean(axis=1)])
-        return stamps_ns, np.where(np.abs(speeds) <= FASTEST_M_S, speeds, np.nan)
+        fast = np.abs(speeds) > FASTEST_M_S
+        self.too_fast += int(np.count_nonzero(fast.any(axis=1)))
+        return stamps_ns, np.where(fast, np.nan, speeds)
+
+    def lost(self) -> list[str]:
+        """What is to be said of rows that are too fast."""
+        if not self.too_fast:
+            return []
+        source = self._source
+        begin = f"{source.topic}: {self.too_fast} rows above {FASTEST_M_S:g} m/s are left out"
+        unit = f" the unit ({source.unit})" if source.unit else " it"
+        if source.speeds:
+            return [f"{begin}; is{unit} right? See --unit"]
+        return [
+            f"{begin}: between two messages a wheel turned impossibly far. Its encoder was reset, "
+            f"or{unit} is wrong: see --unit"
+        ]
 
     def _differences(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Rates of change (N - 1, k) of places, with the last row of the call before."""

@@ -57,6 +57,10 @@ class Stream(Consumer):
         self.file, self.sink = file, sink
         self._by_header = by_header
 
+    def gap(self) -> str:
+        """Why nothing of it could be used, to follow a sentence; empty where that is not known."""
+        return ""
+
     def stamp_ns(self, message: Message, stamped_ns: int) -> int:
         """When a message was made, or received where headers do not count or say nothing."""
         return stamped_ns if self._by_header and stamped_ns else message.received_ns
@@ -95,6 +99,10 @@ class TransformRows(Stream):
         """Take in a message; BagError if it cannot be used."""
         for stamped_ns, row in self._poses.rows(content):
             self._rows.add(self.stamp_ns(message, stamped_ns), row)
+
+    def gap(self) -> str:
+        """Which chain of frames is missing."""
+        return f": {self._poses.gap()}"
 
 
 class Images(Stream):

@@ -31,6 +31,7 @@ class Tally:
         self.ranges: Ranges = {}
         self.problem = ""
         self.frames: dict[str, None] = {}
+        self.joints: dict[str, None] = {}
         self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
 
@@ -53,6 +54,8 @@ class Tally:
             widen(self.ranges, content)
         if self.connection.message_type == FIX:
             self.frames[body_frame(content)] = None
+        if self.connection.message_type == JOINTS:
+            self.joints.update(dict.fromkeys(content.name))
         stamp_ns = header_ns(content)
         if stamp_ns:
             self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
@@ -84,6 +87,7 @@ class Tally:
             self.ranges,
             self.problem if self.sample is None else "",
             tuple(self.frames),
+            tuple(self.joints),
         )
 
 

@@ -119,6 +119,8 @@ class Topic:
         Why it cannot be read; empty where it can.
     frames : tuple of str
         Frames that its satellite fixes name: of several receivers there are several.
+    joints : tuple of str
+        Names of joints in all messages that were looked at.
     """
 
     name: str
@@ -131,6 +133,7 @@ class Topic:
     ranges: Ranges = field(default_factory=dict)
     problem: str = ""
     frames: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
 
     @property
     def duration_s(self) -> float:

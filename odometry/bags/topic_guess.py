@@ -110,6 +110,12 @@ def candidates(topics: Mapping[str, Topic], role: str) -> list[str]:
 
 def _joints(topic: Topic) -> list[Guess]:
     left, right = sided(topic.sample.name)
+    if not left and sided(topic.joints)[0]:
+        wheels = ", ".join(one for side in sided(topic.joints) for one in side)
+        apart = f"{wheels} come in messages of their own, which are not put together: record them "
+        return [
+            Guess("", LIKELY, f"{apart}in one message (joint_state_publisher with source_list)")
+        ]
     if not left:
         return [Guess("", LIKELY, "joints, but no wheels of a left and a right side by name")]
     return [Guess("wheels", 1, f"{', '.join(left)} | {', '.join(right)}")]

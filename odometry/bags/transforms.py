@@ -10,6 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.geometry import se3
 
 Row = tuple[float, ...]
+LONGEST_CHAIN = 100  # frames; more are a circle
 
 
 @dataclass(frozen=True)
@@ -101,15 +102,22 @@ class TransformPoses:
             self._parents[child] = (plain_frame(one.header.frame_id), pose)
             if child == self._carrier:
                 place = Transforms(self._parents).between(self._world, self._body)
-                if place is not None and self._is_above():
+                if place is not None and self._leads(self._body, self._world):
                     stamp = one.header.stamp
                     row = (*place[:3, 3], *se3.quaternion_wxyz(place[:3, :3]))
                     found.append((stamp.sec * 10**9 + stamp.nanosec, tuple(map(float, row))))
         return found
 
-    def _is_above(self) -> bool:
-        """Whether the world is an ancestor of the body."""
-        frame, steps = self._body, 0
-        while frame != self._world and frame in self._parents and steps < 100:
+    def gap(self) -> str:
+        """Why there may be no rows, in terms of frames."""
+        wanted = f"frames from {self._world} (parent) down to {self._body} (child)"
+        if self._leads(self._world, self._body):
+            return f"no {wanted}: {self._body} is the parent of {self._world} here (inverted)"
+        return f"there are no moving {wanted}"
+
+    def _leads(self, child: str, ancestor: str) -> bool:
+        """Whether a frame is below another."""
+        frame, steps = child, 0
+        while frame != ancestor and frame in self._parents and steps < LONGEST_CHAIN:
             frame, steps = self._parents[frame][0], steps + 1
-        return frame == self._world
+        return frame == ancestor

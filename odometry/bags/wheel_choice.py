@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from odometry.bags.message_fields import NO_WHEELS, TWISTS
-from odometry.bags.odometry_kinds import kind_of
+from odometry.bags.odometry_kinds import TRUTH, kind_of
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import LIKELY, candidates, guess
 from odometry.bags.topic_roles import topic_named
@@ -67,4 +67,6 @@ def _other_odometry(topics: Mapping[str, Topic]) -> Iterator[tuple[str, str]]:
     for name, topic in topics.items():
         if _is_other(topic):
             kind = kind_of(topic)
+            if kind.name == TRUTH:
+                continue
             yield name, f"{kind.name} by {kind.sign}"

@@ -18,6 +18,7 @@ from odometry.bags.wheel_names import UNITS, check_unit, gear_of
 from odometry.bags.wheel_sides import dead_joints, sides_of
 from odometry.errors import BagError
 
+LEAST_TICKS = 100  # angles in rad are hardly ever whole at both ends of so long a way
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
     "measure from the centre of a wheel to the terrain, with the robot's weight on it"
@@ -151,12 +152,24 @@ def _joint_values(
     has_velocity = any(moved(topic.ranges, VELOCITY, name) for name in names)
     has_place = any(moved(topic.ranges, PLACE, name) for name in names)
     speeds = said == "velocity" if said else has_velocity or not has_place
+    if not speeds and "unit" not in topic_map and _are_ticks(topic, names):
+        raise BagError(
+            f"{topic.name}: the places of its wheels are whole numbers, as ticks of an encoder "
+            "are, and no angles in rad: add --unit turns --gear TICKS (for a turn of the wheel)"
+        )
     unit = str(topic_map.get("unit", "rad/s" if speeds else "rad"))
     check_unit(unit)
     if UNITS[unit][2] != speeds:
         kind = "speeds" if speeds else "places"
         raise BagError(f"{topic.name}: unit {unit!r}, expected a unit of {kind}")
     return speeds, unit
+
+
+def _are_ticks(topic: Topic, names: tuple[str, ...]) -> bool:
+    """Whether all places that were seen are whole numbers, and moved by many."""
+    ends = [topic.ranges[PLACE, name] for name in names if (PLACE, name) in topic.ranges]
+    whole = all(end.is_integer() for pair in ends for end in pair)
+    return whole and any(most - least >= LEAST_TICKS for least, most in ends)
 
 
 def _unit(topic: Topic, topic_map: Mapping[str, Any]) -> tuple[bool, str]:
