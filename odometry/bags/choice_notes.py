@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from odometry.bags.message_fields import ODOMETRY, TWISTS
-from odometry.bags.odometry_kinds import UNKNOWN, VISUAL, kind_of, no_wheels_move
+from odometry.bags.message_fields import FIX, ODOMETRY, TWISTS
+from odometry.bags.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no_wheels_move
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import candidates
 from odometry.bags.topic_roles import TopicMap
@@ -39,15 +39,16 @@ def wheel_notes(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken
 def reference_notes(
     topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str
 ) -> list[str]:
-    """What is to be said of the topic that was guessed to be the reference."""
+    """What is to be said of odometry that was guessed to be the reference."""
     if not taken or "topic" in topic_map or topics[taken].message_type != ODOMETRY:
         return []
-    if kind_of(topics[taken]).name != VISUAL:
+    kind = kind_of(topics[taken])
+    if kind.name == TRUTH:
         return []
-    return [
-        f"reference: {taken} is visual odometry, which drifts: it serves over some metres, not for "
-        "the end of a drive (--reference none leaves it out)"
-    ]
+    drift = "" if kind.name == SATELLITES else ", which may drift over a long drive"
+    fixes = [name for name, topic in topics.items() if topic.message_type == FIX]
+    how = f"--reference {fixes[0]} takes the fixes" if fixes else "--reference none leaves it out"
+    return [f"reference: {taken} is {kind.name} by {kind.sign}{drift}; {how}"]
 
 
 def equal_topics(

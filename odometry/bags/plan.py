@@ -112,7 +112,7 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         *said,
         *own.notes,
         *wheel_notes(everything, topic_map.wheels, taken),
-        *reference_notes(everything, topic_map.reference, reference),
+        *reference_notes(topics, topic_map.reference, reference),
         *equal_topics(topics, topic_map, {"wheels": taken, **by_role}),
         *_no_reference(topics, topic_map, reference, survey),
     ]

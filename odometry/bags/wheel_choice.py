@@ -47,7 +47,7 @@ def wheel_topic(
     if others:
         seen += (
             ". Odometry of other sensors is there, but it shows no slip of the treads: "
-            f"{', '.join(others)}"
+            f"{', '.join(others)}. Record joint states or wheel odometry as well"
         )
     raise BagError(
         f"no topic is known to hold measured wheel speeds{seen}. Name it with --wheels TOPIC; "

@@ -119,12 +119,24 @@ def test_visual_odometry_is_a_reference_behind_satellites(tmp_path):
     add(bag, "/wheel/odometry")
     topics, said = taken(tmp_path, bag)
     assert topics["reference"] == "/vio/odometry"
-    assert any("visual odometry, which drifts" in note for note in said.notes)
+    words = "/vio/odometry is visual odometry by its name, which may drift over a long drive"
+    assert any(words in note for note in said.notes)
     for t_s, *_ in COURSE:
         bag.fix(t_s, 48.0, 11.0, 500.0)
     path = bag.write(tmp_path / "again")
     run, _ = imported(tmp_path / "second", path)
     assert run.settings["source"]["topics"]["reference"] == "/gps/fix"
+
+
+def test_lidar_odometry_is_a_reference_before_satellites_which_are_said(tmp_path):
+    bag = Bag("mcap")
+    add(bag, "/Odometry", slip=SLIPS)
+    add(bag, "/wheel/odometry")
+    for t_s, *_ in COURSE:
+        bag.fix(t_s, 48.0, 11.0, 500.0)
+    topics, said = taken(tmp_path, bag)
+    assert topics["reference"] == "/Odometry"
+    assert any(note.endswith("--reference /gps/fix takes the fixes") for note in said.notes)
 
 
 def test_speeds_of_satellites_are_no_wheels(tmp_path):
