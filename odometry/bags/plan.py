@@ -81,6 +81,7 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
     taken = wheel_topic(everything, topic_map.wheels, topic_map.reference)
     own = own_topics(everything, taken)
     topics = own.topics
+    survey.robot.use_robot(own.robot)
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
     robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies), own.robot)
     wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)

@@ -132,6 +132,7 @@ class RobotMessages:
         self._changed: set[str] = set()
         self._moving_looks = 0
         self.description = RobotDescription()
+        self._described: dict[str, RobotDescription] = {}
         self.numbers: dict[str, float] = {}
 
     def may_describe_robot(self, message: Message) -> bool:
@@ -156,11 +157,11 @@ class RobotMessages:
                 if before[0] != link[0] or np.abs(before[1] - link[1]).max() > STILL:
                     self._changed.add(child)
         elif kind == TEXT:
-            self._describe(content.data)
+            self._describe(content.data, message.connection.topic)
         else:
             for one in (*content.new_parameters, *content.changed_parameters):
                 if one.value.type == STRING and "<robot" in one.value.string_value:
-                    self._describe(one.value.string_value)
+                    self._describe(one.value.string_value, str(content.node))
                 elif one.value.type == DOUBLE and one.name in NUMBERS:
                     self.numbers[NUMBERS[one.name]] = one.value.double_value
 
@@ -183,7 +184,13 @@ class RobotMessages:
         """The same with wheels and what else moved, as it stood at first."""
         return Transforms({**self._moving, **self.description.parents, **self._fixed})
 
-    def _describe(self, text: str) -> None:
+    def use_robot(self, name: str) -> None:
+        """Of several descriptions, use the one whose topic or node has this part in its name."""
+        for topic, description in self._described.items():
+            if name and name in topic.split("/"):
+                self.description = description
+
+    def _describe(self, text: str, topic: str) -> None:
         found = robot_description(text)
         if found is not None:
-            self.description = found
+            self._described[topic] = self.description = found

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from odometry.bags.topic_roles import TopicMap
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import RADIUS_M, Bag, course, half_turn
 
@@ -77,6 +78,24 @@ def test_the_base_frame_is_of_the_robot_of_the_wheels(tmp_path):
             message.child_frame_id = "tracker"
     run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
     assert run.settings["sensors"]["pose"] == pytest.approx([0.3, 0, 0])
+
+
+URDF = """<robot name="{name}"><link name="base_link"/><link name="wheel"><collision><geometry>
+<cylinder radius="{radius}" length="0.1"/></geometry></collision></link><joint name="left_wheel"
+type="continuous"><parent link="base_link"/><child link="wheel"/></joint></robot>"""
+
+
+@pytest.mark.parametrize("first", [("husky1", "husky2"), ("husky2", "husky1")])
+def test_the_description_is_of_the_robot_of_the_wheels(first, tmp_path):
+    bag = bag_of("husky1", "husky2")
+    radii = {"husky1": 0.15, "husky2": 0.3}
+    for number, robot in enumerate(first):
+        text = URDF.format(name=robot, radius=radii[robot])
+        bag.text(f"/{robot}/robot_description", number, text)
+    path = bag.write(tmp_path / "drive")
+    size = TopicMap().overridden({"robot.track_width": 0.6})
+    run, _ = imported(tmp_path / "run", path, topic_map=size, unsized=True)
+    assert run.settings["robot"] == {"name": "husky1", "track_width": 0.6, "wheel_radius": 0.15}
 
 
 def test_parts_of_one_robot_are_no_robots(tmp_path):
