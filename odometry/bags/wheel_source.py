@@ -12,12 +12,14 @@ from odometry.bags.message_fields import (
     TWISTS,
     number_paths,
 )
-from odometry.bags.topic import PLACE, VELOCITY, Topic, moved
+from odometry.bags.topic import PLACE, VELOCITY, Topic, farthest, moved
 from odometry.bags.topic_guess import unit_of
 from odometry.bags.wheel_names import UNITS, check_unit, gear_of
 from odometry.bags.wheel_sides import dead_joints, sides_of
 from odometry.errors import BagError
 
+# Of the largest speed ahead: a skid-steer robot slides sideways by less, even about its own centre
+SIDEWAYS_SHARE = 0.3
 LEAST_TICKS = 100  # angles in rad are hardly ever whole at both ends of so long a way
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
@@ -124,10 +126,16 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
 
 def _twist(topic: Topic, topic_map: Mapping[str, Any]) -> WheelSource:
     zero = not moved(topic.ranges, VELOCITY, "ahead") and not moved(topic.ranges, VELOCITY, "turn")
+    side, ahead = (farthest(topic.ranges, VELOCITY, [name]) for name in ("side", "ahead"))
+    of_world = side > SIDEWAYS_SHARE * ahead
+    said = topic_map.get("values")
     by_pose = topic.message_type == ODOMETRY and (
-        topic_map.get("values") == "position" or (zero and moved(topic.ranges, PLACE, "x"))
+        said == "position"
+        or (said is None and (zero or of_world) and moved(topic.ranges, PLACE, "x"))
     )
     what = "differences of its poses" if by_pose else "its twist"
+    if by_pose and of_world and not zero:
+        what += " (its twist goes sideways, as one in the world's axes does)"
     why = f"{what}, as v -/+ w * separation / 2"
     signs = (float(topic_map.get("left_sign", 1)), float(topic_map.get("right_sign", 1)))
     return WheelSource(topic.name, "twist", (), (), *signs, speeds=not by_pose, why=why)

@@ -158,6 +158,23 @@ def test_wheel_odometry_that_moves_sideways_is_said(tmp_path):
     assert any("no plain wheel odometry by its sideways speed" in note for note in said.notes)
 
 
+def test_a_twist_in_the_axes_of_the_world_is_not_taken(tmp_path):
+    """Its poses are differenced: they are the same in any axes."""
+    bag = Bag("mcap")
+    for t_s, left, right, x, y, yaw in COURSE:
+        ahead, turn = (left + right) / 2, (right - left) / TRACK_M
+        twist = bag.message(
+            "geometry_msgs/msg/Twist",
+            linear=bag.vector(ahead * np.cos(yaw + 1), ahead * np.sin(yaw + 1), 0),
+            angular=bag.vector(0, 0, turn),
+        )
+        bag.odometry("/wheel/odometry", t_s, bag.pose((x, y, 0), half_turn(yaw)), twist)
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    true = np.array(COURSE)[:-1, 1:3]
+    assert run.odometry.stack("v_left", "v_right") == pytest.approx(true, abs=1e-6)
+    assert any("as one in the world's axes does" in note for note in said.notes)
+
+
 def test_of_two_equal_topics_the_other_is_said(tmp_path):
     bag = Bag("mcap")
     add(bag, "/wheel/odometry")
