@@ -88,9 +88,11 @@ def write_run(
         of_wheels = speeds.agreement.verdict()
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
+    seen = [*of_wheels, *lens.notes()]
+    settings["source"]["notes"] += seen
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
-    return Imported(rows, (*plan.notes, *of_wheels, *notes, *lens.notes(), *of_attitudes), losses)
+    return Imported(rows, (*plan.notes, *notes, *seen, *of_attitudes), losses)
 
 
 def _check_wheels(

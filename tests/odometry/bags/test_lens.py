@@ -52,6 +52,7 @@ def test_a_later_camera_info_that_differs_is_said(kind, later, words, tmp_path):
     (note,) = [one for one in told if one.startswith("warning: ")]
     assert f"/camera/camera_info changes on the way ({words}" in note
     assert "3 of its 10 messages differ" in note
+    assert note in run.settings["source"]["notes"]
 
 
 def test_a_camera_info_that_stays_or_is_rounded_is_not_said(tmp_path):
