@@ -88,6 +88,6 @@ def _of_same_wheels(wheels: str, topics: Mapping[str, Topic]) -> tuple[str, set[
         if _parts(name)[1:] == rest
         and _may_be_robot(_parts(name)[0])
         and topic.message_type == topics[wheels].message_type
-        and any(one.role == "wheels" and one.rank < GUESSED for one in guess(topic))
+        and any(one.role == "wheels" and one.rank <= GUESSED for one in guess(topic))
     }
     return robot, others - {robot}

@@ -62,6 +62,17 @@ def test_robots_of_other_names_are_known_by_the_same_topic_of_wheels(tmp_path):
     assert other.settings["source"]["topics"]["reference"] == "/bravo/ground_truth"
 
 
+def test_robots_are_known_by_wheel_odometry_of_a_plain_name(tmp_path):
+    bag = Bag("mcap")
+    for t_s, left, right, x, y, yaw in course(8.0):
+        pose, twist = bag.pose((x, y, 0), half_turn(yaw)), bag.twist((left + right) / 2, 0)
+        bag.odometry("/alpha/odom", t_s, pose, twist)
+        bag.odometry("/bravo/odom", t_s, pose, twist)
+        bag.odometry("/bravo/slam", t_s, pose, twist)
+    run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert run.settings["source"]["topics"] == {"wheels": "/alpha/odom"}
+
+
 def test_the_base_frame_is_of_the_robot_of_the_wheels(tmp_path):
     bag = bag_of("husky2", "husky1")
     still = (1, 0, 0, 0)
