@@ -43,6 +43,18 @@ def test_places_of_a_wrong_unit_are_no_run_of_the_few_rows_that_fit(tmp_path):
         imported(tmp_path / "run", bag.write(tmp_path / "drive"))
 
 
+def test_an_encoder_that_is_reset_is_no_speed(tmp_path):
+    turned = angles()
+    turned[80:] -= turned[80] + 1000
+    bag = bag_of((["left_wheel", "right_wheel"], turned, None))
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert np.abs(run.odometry.stack("v_left", "v_right")).max() < 2
+    assert len(run.odometry) == len(COURSE) - 2
+    (line,) = said.losses
+    assert "1 rows above 50 m/s are left out: between two messages a wheel turned" in line
+    assert "Its encoder was reset, or the unit (rad) is wrong: see --unit" in line
+
+
 def test_wheels_in_messages_of_their_own_are_named(tmp_path):
     front, rear = ["front_left_wheel", "front_right_wheel"], ["rear_left_wheel", "rear_right_wheel"]
     bag = bag_of((front, None, RATES), (rear, None, RATES), (["pan"], None, RATES[:, :1]))

@@ -120,21 +120,6 @@ def test_positions_are_differenced_where_velocities_are_not_measured(velocity, w
     assert any("differences of places" in note for note in said.notes)
 
 
-def test_an_encoder_that_is_reset_is_no_speed(tmp_path):
-    turned = angles()
-    turned[80:] -= turned[80] + 1000
-
-    def message(bag, t, _left, _right):
-        bag.joints(t, ["left_wheel", "right_wheel"], turned[round(t * 20)], np.zeros(0))
-
-    found, said = speeds(bag_of(message), tmp_path)
-    assert np.abs(found).max() < 2
-    assert len(found) == len(COURSE) - 2
-    (line,) = said.losses
-    assert "1 rows above 50 m/s are left out: between two messages a wheel turned" in line
-    assert "Its encoder was reset, or the unit (rad) is wrong: see --unit" in line
-
-
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3", "mcap"])
 def test_a_type_of_the_bag_itself_is_read_by_its_definition(kind, tmp_path):
     inner, outer = "my_robot/msg/Drive", "my_robot/msg/Feedback"
