@@ -1,34 +1,24 @@
 """How a robot moves from image to image, by the terrain that both of them show."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.io.files import read_bytes
+from odometry.arrays import FloatArray, IntArray
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.image_files import MOST_BYTES, spread
-from terrain.errors import ImageError
-from terrain.image_size import stated_size
+from terrain.checks.image_files import spread
+from terrain.checks.terrain_views import FEWEST, Pixels, TerrainViews
 
 PAIRS, FEWEST_PAIRS = 32, 16  # of images that are compared, some milliseconds each
 MOST_PIXELS = 400_000_000  # that are decoded, unless there are the fewest pairs: some seconds
 APART_M, APART_S = 0.12, 1.0  # travel of the treads between them, if it takes no longer
 MOVING_M = 0.02  # with less travel an image shows the same as the one before
-WIDTH_PX = 320  # larger images are reduced to it: their details say no more of the motion
-REDUCED = {
-    1: cv2.IMREAD_GRAYSCALE,
-    2: cv2.IMREAD_REDUCED_GRAYSCALE_2,
-    4: cv2.IMREAD_REDUCED_GRAYSCALE_4,
-    8: cv2.IMREAD_REDUCED_GRAYSCALE_8,
-}
-FEATURES, CONTRAST = 400, 7  # of an image, and the grey levels of the weakest: sand is smooth
-DISTINCT = 0.8  # distance of a feature to its like, over that to the next like it
-FEWEST = 12  # features that move as one piece of terrain
-# Of the camera's height: how far terrain is looked at, and how far off a feature may be there
-FARTHEST, OFF = 6.0, 0.03
+# Of the scale between two images: steady cameras have 0.002 to 0.007, and 0.04 where the pitch is
+# wrong by 8 degrees; one that rocks by half a degree and more has 0.013 to 0.17
+STEADY = 0.012
+OFF = 0.03  # of the camera's height: how far off a feature may be on the terrain
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,31 +35,60 @@ class GroundSteps:
         x, y [m], yaw [rad] of the second robot frame in the first.
     tried : int
         Pairs of images that were compared.
+    scales : (P,)
+        How much larger terrain is in the first image than in the second; 1 by the right camera.
+    matches : tuple of Pixels
+        The same terrain in both images of each pair, some of it mistaken.
     """
 
     rows: IntArray
     stamps_s: FloatArray
     steps: FloatArray
     tried: int
+    scales: FloatArray = field(default_factory=lambda: np.empty(0))
+    matches: tuple[Pixels, ...] = ()
 
     def __len__(self) -> int:
         return len(self.steps)
 
+    @property
+    def scale(self) -> tuple[float, float]:
+        """Median of the scales' logarithms, and their deviation (1.48 times the median one)."""
+        logs = np.log(self.scales)
+        middle = float(np.median(logs))
+        return middle, 1.48 * float(np.median(np.abs(logs - middle)))
 
-def ground_steps(run: Run, camera: Camera) -> GroundSteps:
+    @property
+    def is_steady(self) -> bool:
+        """Whether the camera does not rock, and looks as it is said to."""
+        return max(abs(of) for of in self.scale) < STEADY
+
+
+def ground_steps(run: Run, camera: Camera, views: TerrainViews | None = None) -> GroundSteps:
     """Match the terrain of pairs of images, spread over the motion of a run."""
-    pairs = _pairs(run, camera)
-    seen = {row: _features(run, camera, row) for row in np.unique(pairs).tolist()}
-    off_m = OFF * camera.height_m
-    found = [_step(seen[first], seen[second], off_m) for first, second in pairs.tolist()]
-    known = [place for place, step in enumerate(found) if step is not None]
-    stamps_s = np.empty((0, 2)) if run.images is None else run.images.stamps_s[pairs[known]]
-    steps = np.array([found[place] for place in known], dtype=np.float64)
-    stamps_s = stamps_s.reshape(-1, 2)
-    return GroundSteps(pairs[known].reshape(-1, 2), stamps_s, steps.reshape(-1, 3), len(pairs))
+    pairs = pairs_to_compare(run, camera)
+    if run.images is None or not len(pairs):
+        return GroundSteps(pairs, np.empty((0, 2)), np.empty((0, 3)), len(pairs))
+    views = views or TerrainViews(run, camera.image_size)
+    files, found = run.images["file"], []
+    for place, (first, second) in enumerate(pairs.tolist()):
+        same = views.same(camera, str(files[first]), str(files[second]))
+        moved = None if same is None else moved_terrain(camera, same)
+        if same is not None and moved is not None:
+            found.append((place, same, moved))
+    known = pairs[[place for place, _, _ in found]].reshape(-1, 2)
+    moves = np.array([moved for _, _, moved in found], dtype=np.float64).reshape(-1, 4)
+    return GroundSteps(
+        known,
+        run.images.stamps_s[known].reshape(-1, 2),
+        moves[:, :3],
+        len(pairs),
+        moves[:, 3],
+        tuple(same for _, same, _ in found),
+    )
 
 
-def _pairs(run: Run, camera: Camera) -> IntArray:
+def pairs_to_compare(run: Run, camera: Camera) -> IntArray:
     """Rows (P, 2) of images.csv: an image, and the first one after some travel of the treads."""
     if run.images is None or len(run.images) < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -85,56 +104,12 @@ def _pairs(run: Run, camera: Camera) -> IntArray:
     return np.column_stack([first[chosen], second[chosen]])
 
 
-Features = tuple[FloatArray, AnyArray]  # places (N, 2) on the terrain [m], and what is there
-
-
-def _features(run: Run, camera: Camera, row: int) -> Features | None:
-    assert run.images is not None  # noqa: S101 - for the type checker: it has rows
-    image = _grey(run, camera, str(run.images["file"][row]))
-    if image is None:
-        return None
-    found, described = cv2.ORB.create(FEATURES, fastThreshold=CONTRAST).detectAndCompute(
-        image, None
-    )
-    if not found:
-        return None
-    pixels = np.array([one.pt for one in found], dtype=np.float64)
-    places = camera.pixels_to_ground((pixels + 0.5) * camera.image_size[0] / image.shape[1] - 0.5)
-    near = np.linalg.norm(places, axis=1) < FARTHEST * camera.height_m
-    return places[near], described[near]
-
-
-def _grey(run: Run, camera: Camera, name: str) -> AnyArray | None:
-    """An image of the camera's size, reduced, in grey."""
-    try:
-        encoded = read_bytes(run.folder / name, ImageError, MOST_BYTES, "an image has less")
-    except ImageError:
-        return None
-    if stated_size(encoded) != camera.image_size:
-        return None
-    width = camera.image_size[0]
-    flag = REDUCED[max(by for by in REDUCED if by == 1 or width / by >= WIDTH_PX)]
-    try:
-        image = cv2.imdecode(np.frombuffer(encoded, np.uint8), flag | cv2.IMREAD_IGNORE_ORIENTATION)
-    except cv2.error:
-        return None
-    if image is None or image.shape[1] <= WIDTH_PX:
-        return image
-    height = round(image.shape[0] * WIDTH_PX / image.shape[1])
-    return np.asarray(cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA))
-
-
-def _step(before: Features | None, after: Features | None, off_m: float) -> FloatArray | None:
-    """The step (3,) under which most terrain of both is the same; None where too little is."""
-    if before is None or after is None or min(len(before[0]), len(after[0])) < FEWEST:
-        return None
-    pairs = cv2.BFMatcher(cv2.NORM_HAMMING).knnMatch(before[1], after[1], k=2)
-    same = [one for one, other in pairs if one.distance < DISTINCT * other.distance]
-    if len(same) < FEWEST:
-        return None
-    here = before[0][[one.queryIdx for one in same]]
-    there = after[0][[one.trainIdx for one in same]]
+def moved_terrain(camera: Camera, same: Pixels) -> FloatArray | None:
+    """Step (3,) and scale under which most terrain of both is the same; None for too little."""
+    here, there = (camera.pixels_to_ground(pixels) for pixels in same)
+    off_m = OFF * camera.height_m
     moved, agrees = cv2.estimateAffinePartial2D(there, here, ransacReprojThreshold=off_m)
     if moved is None or int(agrees.sum()) < FEWEST:
         return None
-    return np.array([moved[0, 2], moved[1, 2], np.arctan2(moved[1, 0], moved[0, 0])])
+    (a, _, x), (b, _, y) = moved
+    return np.array([x, y, np.arctan2(b, a), np.hypot(a, b)])

@@ -108,14 +108,41 @@ class ImageMotion:
     @cached_property
     def noise(self) -> float:
         """Factor of the standard deviations: at the best lag half of the pairs are within."""
-        first = agreement(self.steps.steps, *self._robot(self._at_lags), 1.0)
-        best = int(first.losses.sum(axis=1).argmin())
-        return max(1.0, float(np.median(first.off[best])) / MEDIAN)
+        off = self._steady.off[int(self.plain_losses.argmin())]
+        return max(1.0, float(np.median(off)) / MEDIAN)
+
+    @cached_property
+    def robot_at_lags(self) -> tuple[FloatArray, FloatArray]:
+        """Travel [m] and turn [rad] (G, P) of the robot at every lag."""
+        return self._robot(np.asarray(self.steps.stamps_s - self.lags_s[:, None, None]))
+
+    @cached_property
+    def _steady(self) -> Agreement:
+        return agreement(self.steps.steps, *self.robot_at_lags, 1.0)
+
+    @property
+    def plain_losses(self) -> FloatArray:
+        """Loss (G,) at every lag, by a camera that does not rock."""
+        return np.asarray(self._steady.losses.sum(axis=1))
+
+    @cached_property
+    def plain_reversed_loss(self) -> float:
+        """The same where the last image was taken first."""
+        return self._loss_of(*self._robot_reversed, 1.0)
+
+    @cached_property
+    def plain_even_loss(self) -> float:
+        """Loss of the steps of the treads against even motion: how much there is to agree with."""
+        travel_m, turn_rad = (of[0] for of in self._robot(self.steps.stamps_s[None]))
+        moved = travel_m * np.sinc(turn_rad / (2 * np.pi)) * np.exp(0.5j * turn_rad)
+        steps = np.column_stack([moved.real, moved.imag, turn_rad])
+        found = agreement(steps, *self._even(steps), 1.0)
+        return float(found.losses.sum())
 
     @cached_property
     def by_lag(self) -> Agreement:
         """At every lag."""
-        return agreement(self.steps.steps, *self._robot(self._at_lags), self.noise)
+        return agreement(self.steps.steps, *self.robot_at_lags, self.noise)
 
     @cached_property
     def losses(self) -> FloatArray:
@@ -144,23 +171,26 @@ class ImageMotion:
     @cached_property
     def reversed_loss(self) -> float:
         """Loss where the last image was taken first."""
+        return self._loss_of(*self._robot_reversed, self.noise)
+
+    @cached_property
+    def _robot_reversed(self) -> tuple[FloatArray, FloatArray]:
         stamps_s = self.run.images.stamps_s if self.run.images is not None else np.zeros(1)
         back_s = stamps_s[::-1][self.steps.rows]
-        return self._loss_of(*self._robot(back_s[None]))
+        return self._robot(back_s[None])
 
     @cached_property
     def even_loss(self) -> float:
         """Loss of a robot that moves in the same way all the time."""
+        return self._loss_of(*self._even(self.steps.steps), self.noise)
+
+    def _even(self, steps: FloatArray) -> tuple[FloatArray, FloatArray]:
         lasts_s = np.diff(self.steps.stamps_s, axis=1)[:, 0]
-        x, y, yaw = np.median(self.steps.steps / lasts_s[:, None], axis=0)
-        return self._loss_of(np.hypot(x, y) * lasts_s[None], yaw * lasts_s[None])
+        x, y, yaw = np.median(steps / lasts_s[:, None], axis=0)
+        return np.hypot(x, y) * lasts_s[None], yaw * lasts_s[None]
 
-    def _loss_of(self, travel_m: FloatArray, turn_rad: FloatArray) -> float:
-        return float(agreement(self.steps.steps, travel_m, turn_rad, self.noise).losses.sum())
-
-    @property
-    def _at_lags(self) -> FloatArray:
-        return np.asarray(self.steps.stamps_s - self.lags_s[:, None, None])
+    def _loss_of(self, travel_m: FloatArray, turn_rad: FloatArray, noise: float) -> float:
+        return float(agreement(self.steps.steps, travel_m, turn_rad, noise).losses.sum())
 
     def _robot(self, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Travel [m] and turn [rad] (G, P) of the robot between stamps (G, P, 2)."""

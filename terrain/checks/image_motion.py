@@ -7,8 +7,15 @@ import numpy as np
 from odometry.checks.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.ground_steps import FEWEST_PAIRS, ground_steps
+from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
+from terrain.checks.terrain_views import TerrainViews
+from terrain.checks.unrelated_images import (
+    UNEXPLAINED,
+    unexplained,
+    unrelated_images,
+    varies,
+)
 
 EXPLAINED = 0.75  # of the loss of even motion: what the treads may leave, where images show them
 BETTER = 10.0  # of the loss [nats]: what a lag or the reverse order must gain
@@ -29,27 +36,46 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     str
         Why nothing could be checked, or "".
     """
-    steps = ground_steps(run, camera)
-    if len(steps) < FEWEST_PAIRS:
-        return [], (
-            "whether images show the motion of the treads: the same terrain was recognised in "
-            f"{len(steps)} of {steps.tried} pairs of images, expected {FEWEST_PAIRS} or more"
+    views = TerrainViews(run, camera.image_size)
+    steps = ground_steps(run, camera, views)
+    motion = ImageMotion(run, steps) if len(steps) >= FEWEST_PAIRS else None
+    why = _doubt(motion, steps)
+    if why:
+        others = list(unrelated_images(run, camera, views, steps))
+        if others:
+            return others, ""
+    if motion is None or why == _DISAGREE:
+        return [], f"whether images show the motion of the treads: {why}"
+    found = list(_findings(motion, camera.height_m))
+    return (
+        found,
+        f"whether images show the motion of the treads: {why}" if why and not found else "",
+    )
+
+
+_DISAGREE = (
+    f"they do not agree within {LARGEST_LAG_S:g} s (images of another drive or upside down, a "
+    "camera that rocks, or a robot that always moves in the same way)"
+)
+
+
+def _doubt(motion: ImageMotion | None, steps: GroundSteps) -> str:
+    """Why it is not sure that images show the motion of the treads, or ""."""
+    if motion is None:
+        return (
+            f"the same terrain was recognised in {len(steps)} of {steps.tried} pairs of images, "
+            f"expected {FEWEST_PAIRS} or more"
         )
-    motion = ImageMotion(run, steps)
     loss = min(float(motion.losses[motion.best]), motion.reversed_loss)
     if loss > EXPLAINED * motion.even_loss or not motion.is_within:
-        return [], (
-            "whether images show the motion of the treads: they do not agree within "
-            f"{LARGEST_LAG_S:g} s (images of another drive or upside down, a camera that rocks, or "
-            "a robot that always moves in the same way)"
+        return _DISAGREE
+    if steps.is_steady and varies(motion) and unexplained(motion) > UNEXPLAINED:
+        return _DISAGREE
+    if motion.noise > POOR:
+        return (
+            "they agree, but poorly (images upside down or of another lens, or a camera that rocks)"
         )
-    found = list(_findings(motion, camera.height_m))
-    if not found and motion.noise > POOR:
-        return [], (
-            "whether images show the motion of the treads: they agree, but poorly (images upside "
-            "down or of another lens, or a camera that rocks)"
-        )
-    return found, ""
+    return ""
 
 
 def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:

@@ -11,7 +11,8 @@ import odometry
 import terrain
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.checks.ground_steps import ground_steps
+from terrain.checks import unrelated_images
+from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_motion import POOR, image_motion
 from tests.studies.check_image_motion import moved, with_images
@@ -83,17 +84,51 @@ def test_images_in_the_reverse_order_are_named(drive, camera):
     assert set(found(run, camera)) == {"images_reversed"}
 
 
-def test_images_of_another_drive_are_not_judged(drive, camera):
-    files = drive.images["file"]
-    findings, skipped = image_motion(
-        with_images(drive, file=np.roll(files, len(files) // 2)), camera
-    )
+def half_a_run_off(drive):
+    return with_images(drive, file=np.roll(drive.images["file"], len(drive.images) // 2))
+
+
+@pytest.fixture
+def by_content(monkeypatch):
+    """Names of the files say nothing of their order."""
+    monkeypatch.setattr(unrelated_images, "_by_name", lambda _: None)
+
+
+@pytest.mark.usefixtures("by_content")
+def test_images_of_another_drive_are_named(drive, camera):
+    finding = found(half_a_run_off(drive), camera)["images_unrelated"]
+    assert "another drive" in finding.cause
+
+
+@pytest.mark.usefixtures("by_content")
+def test_a_camera_that_rocks_is_not_taken_for_another_drive(drive, camera, monkeypatch):
+    monkeypatch.setattr(GroundSteps, "is_steady", False)
+    findings, skipped = image_motion(half_a_run_off(drive), camera)
     assert findings == []
     assert "do not agree within 10 s" in skipped
 
 
-def test_images_in_no_order_are_not_judged(drive, camera):
+@pytest.mark.parametrize("order", ["as text", "mixed"])
+def test_another_order_than_that_of_the_names_is_named(drive, camera, order):
+    files = drive.images["file"]
+    places = np.array(sorted(range(len(files)), key=str))
+    if order == "mixed":
+        places = np.random.default_rng(3).permutation(len(files))
+    finding = found(with_images(drive, file=files[places]), camera)["images_unordered"]
+    assert "by their numbers" in finding.remedy
+
+
+@pytest.mark.usefixtures("by_content")
+def test_images_in_no_order_are_named_by_their_content(drive, camera):
     files = np.random.default_rng(3).permutation(drive.images["file"])
+    finding = found(with_images(drive, file=files), camera)["images_unrelated"]
+    assert "no order" in finding.cause
+
+
+@pytest.mark.usefixtures("by_content")
+def test_terrain_that_is_recognised_nowhere_is_not_judged(drive, camera, monkeypatch):
+    files = np.random.default_rng(3).permutation(drive.images["file"])
+    monkeypatch.setattr(unrelated_images, "FEWEST_OTHERS", 10_000)
     findings, skipped = image_motion(with_images(drive, file=files), camera)
     assert findings == []
     assert "of 32 pairs of images" in skipped
@@ -117,14 +152,16 @@ def test_what_other_warnings_explain_is_not_compared(drive):
     assert any("see the warnings" in words for words in report.skipped)
 
 
-def test_images_upside_down_are_not_accused_of_anything_else(drive, camera, tmp_path):
+def test_images_upside_down_are_named(drive, camera, tmp_path):
     folder = tmp_path / "run"
     shutil.copytree(drive.folder, folder)
     for path in sorted((folder / "images").iterdir()):
         cv2.imwrite(str(path), cv2.flip(cv2.imread(str(path)), -1))
-    findings, skipped = image_motion(Run.read(folder), camera)
-    assert not findings
-    assert "upside down" in skipped
+    assert set(found(Run.read(folder), camera)) == {"images_upside_down"}
+
+
+def test_a_mount_that_is_rolled_by_half_a_turn_is_named(drive, camera):
+    assert set(found(drive, moved(camera, 3, lambda roll: roll + np.pi))) == {"images_upside_down"}
 
 
 def test_motion_that_agrees_poorly_is_not_taken_for_checked(drive, camera, monkeypatch):
