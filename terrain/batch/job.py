@@ -11,6 +11,7 @@ from odometry.outputs.manifest import FINISHED, Manifest, check_finished, read_m
 from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Asked, Made
 from odometry.outputs.written_tables import changes_of
+from terrain.believed_images import believed
 from terrain.checks.recording import checked_run
 from terrain.one_thread import one_thread
 from terrain.results import write_run
@@ -58,6 +59,8 @@ class Outcome:
         Of its inputs, as in `Made`.
     wall_s, cpu_s : float
         What it took.
+    left_out : str
+        Why its images were not believed, or "".
     """
 
     job: Job
@@ -66,12 +69,13 @@ class Outcome:
     sums: tuple[tuple[str, str, str], ...] = ()
     wall_s: float = 0.0
     cpu_s: float = 0.0
+    left_out: str = ""
 
 
 def run_job(job: Job) -> Outcome:
     """Replay one run; whatever goes wrong is its outcome."""
     wall_s, cpu_s = time.monotonic(), time.process_time()
-    made, state, said = None, REPLAYED, ""
+    made, state, said, left_out = None, REPLAYED, "", ""
     try:
         for _, path in job.asked.inputs:
             check_finished(job.asked.where / path)
@@ -86,19 +90,23 @@ def run_job(job: Job) -> Outcome:
             else:
                 return Outcome(job, KEPT, "", made.inputs)
         with one_thread():
-            _replay(job, made)
+            left_out = _replay(job, made)
     except (OdometryError, OSError, MemoryError) as error:
         state, said = FAILED, str(error) or type(error).__name__
     except Exception as error:  # one run that finds a fault of ours must not end the others
         state, said = FAILED, f"{type(error).__name__}: {error}"
     took = time.monotonic() - wall_s, time.process_time() - cpu_s
-    return Outcome(job, state, " ".join(said.split()), made.inputs if made else (), *took)
+    inputs = made.inputs if made else ()
+    return Outcome(job, state, " ".join(said.split()), inputs, *took, left_out)
 
 
-def _replay(job: Job, made: Made) -> None:
+def _replay(job: Job, made: Made) -> str:
+    """Replay and write; why the images were not believed, or ""."""
     output = claim_folder(job.out, made)
     run, report = checked_run(job.folder, job.options.span, images=job.options.reads_images)
-    write_run(job.options.replay(run), output, [report])
+    options, left_out = believed(job.options, report)
+    write_run(options.replay(run), output, [report])
+    return left_out
 
 
 def _is_whole(manifest: Manifest, folder: Path) -> bool:

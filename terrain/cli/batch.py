@@ -132,6 +132,8 @@ def _print(done: "Batch", out: Path) -> None:
     for outcome in done.outcomes:
         if outcome.said and outcome.state != "failed":
             click.echo(f"Note: {outcome.job.name} is replayed again: {outcome.said}", err=True)
+        if outcome.left_out:
+            click.echo(f"Warning: {outcome.job.name}: {outcome.left_out}", err=True)
     for row in done.rows:
         if row.error:
             click.echo(f"{row.name}: failed: {row.error}")

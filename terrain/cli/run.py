@@ -130,11 +130,14 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     Reads images, tread speeds and poses in time order, classifies the terrain ahead, switches the
     ICRs when the robot gets there, and writes trajectories, ICRs, terrain, figures and one page.
     With --source the terrain comes from elsewhere: `labels` shows what true labels would give.
+    Images that the check finds to be of another drive, in another order or upside down are left
+    out, as with --no-vision.
 
     \b
     Example:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
+    from terrain.believed_images import believed
     from terrain.cli.hints import hints, learned_advice
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
@@ -146,6 +149,9 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)
+    options, left_out = believed(options, checks_made()[-1])
+    if left_out:
+        click.echo(f"Warning: {run_folder}: {left_out}", err=True)
     result = options.replay(recording, show_progress=True)
     noticed = hints(result, vision=options.wants_images, named=options.terrain)
     for hint in [*noticed, *sentences(sets_against_poses(result))]:

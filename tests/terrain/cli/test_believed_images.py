@@ -1,0 +1,68 @@
+"""Images that show other terrain than that ahead are not believed, by `run` and by `batch`."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from odometry.checks.finding import CheckReport, Finding, Level
+from terrain.believed_images import ELSEWHERE, believed
+from terrain.cli.batch import batch
+from terrain.cli.run import run
+from terrain.config import Config
+from terrain.run_options import RunOptions
+
+
+def found(name):
+    return Finding(name, Level.WARNING, "seen", "Images are of another drive", "look")
+
+
+@pytest.fixture
+def of_another_drive(monkeypatch):
+    """What a check of images against the motion finds in any run."""
+    answer = [found("images_unrelated")], ""
+    monkeypatch.setattr("terrain.checks.recording.image_motion", lambda *_: answer)
+
+
+@pytest.mark.parametrize("name", sorted(ELSEWHERE))
+@pytest.mark.parametrize("source", [None, "camera"])
+def test_vision_is_left_out(name, source):
+    options = RunOptions(Config(), model=Path("a.model"), source=source)
+    changed, said = believed(options, CheckReport(Path("a"), (found(name),)))
+    assert changed.terrain_source == "none"
+    assert said.endswith("Images are of another drive")
+
+
+@pytest.mark.parametrize("name", ["images_late", "camera_height"])
+def test_what_moves_labels_by_a_little_is_no_reason(name):
+    options = RunOptions(Config(), model=Path("a.model"))
+    assert believed(options, CheckReport(Path("a"), (found(name),))) == (options, "")
+
+
+@pytest.mark.parametrize("source", ["labels", "feel"])
+def test_other_sources_stay(source):
+    options = RunOptions(Config(), source=source, feel=Path("feel"))
+    report = CheckReport(Path("a"), (found("images_unrelated"),))
+    assert believed(options, report) == (options, "")
+
+
+@pytest.mark.usefixtures("no_report", "of_another_drive")
+def test_run_says_so_and_keeps_one_terrain(across_run, model_file, tmp_path):
+    arguments = [across_run, "--out", tmp_path / "out", "--model", model_file]
+    answer = CliRunner().invoke(run, [str(argument) for argument in arguments])
+    assert answer.exit_code == 0, answer.output
+    assert "vision is left out, as with --no-vision: Images are of another" in answer.stderr
+    content = json.loads((tmp_path / "out" / "result.json").read_text())
+    assert not content["vision"]
+    assert "images_unrelated" in json.dumps(content)
+
+
+@pytest.mark.usefixtures("no_report", "of_another_drive")
+def test_batch_leaves_them_out_as_well(across_run, model_file, tmp_path):
+    out = tmp_path / "out"
+    arguments = [across_run, "--out", out, "--model", model_file, "--processes", "1"]
+    answer = CliRunner().invoke(batch, [str(argument) for argument in arguments])
+    assert answer.exit_code == 0, answer.output
+    assert not json.loads((out / "across" / "result.json").read_text())["vision"]
+    assert "across: vision is left out" in answer.stderr
