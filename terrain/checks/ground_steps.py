@@ -77,7 +77,7 @@ def ground_steps(run: Run, camera: Camera, views: TerrainViews | None = None) ->
         if same is not None and moved is not None:
             found.append((place, same, moved))
     known = pairs[[place for place, _, _ in found]].reshape(-1, 2)
-    moves = np.array([moved for _, _, moved in found], dtype=np.float64).reshape(-1, 4)
+    moves = np.array([moved for _, _, moved in found], dtype=np.float64).reshape(-1, 5)
     return GroundSteps(
         known,
         run.images.stamps_s[known].reshape(-1, 2),
@@ -105,11 +105,14 @@ def pairs_to_compare(run: Run, camera: Camera) -> IntArray:
 
 
 def moved_terrain(camera: Camera, same: Pixels) -> FloatArray | None:
-    """Step (3,) and scale under which most terrain of both is the same; None for too little."""
+    """Step (3,) and scale under which most terrain of both is the same, and how large a share.
+
+    None where too little is.
+    """
     here, there = (camera.pixels_to_ground(pixels) for pixels in same)
     off_m = OFF * camera.height_m
     moved, agrees = cv2.estimateAffinePartial2D(there, here, ransacReprojThreshold=off_m)
     if moved is None or int(agrees.sum()) < FEWEST:
         return None
     (a, _, x), (b, _, y) = moved
-    return np.array([x, y, np.arctan2(b, a), np.hypot(a, b)])
+    return np.array([x, y, np.arctan2(b, a), np.hypot(a, b), agrees.mean()])

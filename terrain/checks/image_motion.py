@@ -9,6 +9,7 @@ from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
+from terrain.checks.lens_from_motion import wrong_lens
 from terrain.checks.terrain_views import TerrainViews
 from terrain.checks.unrelated_images import (
     UNEXPLAINED,
@@ -46,7 +47,7 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
             return others, ""
     if motion is None or why == _DISAGREE:
         return [], f"whether images show the motion of the treads: {why}"
-    found = list(_findings(motion, camera.height_m))
+    found = list(_findings(motion, camera))
     return (
         found,
         f"whether images show the motion of the treads: {why}" if why and not found else "",
@@ -78,7 +79,7 @@ def _doubt(motion: ImageMotion | None, steps: GroundSteps) -> str:
     return ""
 
 
-def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:
+def _findings(motion: ImageMotion, camera: Camera) -> Iterator[Finding]:
     if motion.reversed_loss < float(motion.losses[motion.best]) - BETTER:
         yield Finding(
             "images_reversed",
@@ -90,6 +91,8 @@ def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:
         )
         return
     yield from _late(motion)
+    lens = list(wrong_lens(motion, camera))
+    yield from lens
     found, best = motion.by_lag, motion.best
     gain, turn = complex(found.gains[best]), float(found.turns[best])
     unsure, unsure_turn = SURE * float(found.gain_sds[best]), SURE * float(found.turn_sds[best])
@@ -101,8 +104,8 @@ def _findings(motion: ImageMotion, height_m: float) -> Iterator[Finding]:
         return
     if abs(aside_rad) - unsure / size > ASIDE_RAD:
         yield _aside(float(np.degrees(aside_rad)))
-    if size - unsure > LARGER or size + unsure < 1 / LARGER:
-        yield _larger(size, height_m)
+    if not lens and (size - unsure > LARGER or size + unsure < 1 / LARGER):
+        yield _larger(size, camera.height_m)
 
 
 def _late(motion: ImageMotion) -> Iterator[Finding]:
