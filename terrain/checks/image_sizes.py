@@ -16,6 +16,8 @@ Size = tuple[int, int]
 SAME = 0.02  # of a ratio: sizes are rounded to whole pixels, often to even ones
 # Principal points lie within some per cent of the centre; resolutions differ by 1.5 and more.
 CENTRE = (0.75, 1.33)
+# Of the width: a focal length that is longer, after dividing, is rather of a part of larger images
+LONGEST = 1.2
 ALIKE = 1.15  # ratio of the two coordinates of a principal point that is only scaled
 
 
@@ -99,8 +101,20 @@ def _matrix(camera: Camera, table: Mapping[str, Any]) -> Iterator[Scaled]:
         f"{_words(camera.image_size)} is ({(camera.image_size[0] - 1) / 2:.4g}, "
         f"{(camera.image_size[1] - 1) / 2:.4g})"
     )
-    scaled = bool(np.all(off > 0) and off.max() / off.min() < ALIKE)
-    if scaled:
+    mended = None
+    if not np.all(off > 0) or off.max() / off.min() >= ALIKE:
+        cause = "matrix is wrong, or images were cropped or shifted after the calibration"
+        remedy = "Calibrate with images of this size"
+    elif factor > 1 and camera.matrix[0, 0] / factor > LONGEST * camera.image_size[0]:
+        cause = (
+            "Images are a part that was cut out of larger ones (a region of interest, whose "
+            f"offset matrix lacks), or matrix is of a resolution {factor:.3g} times as large"
+        )
+        remedy = (
+            "Take the offset of the part from the principal point; nothing, if that was done and "
+            "the part lies aside of the lens's middle"
+        )
+    else:
         matrix = np.array(camera.matrix)
         matrix[:2] /= factor
         mended = dict(table) | {"matrix": matrix.tolist()}
@@ -109,10 +123,11 @@ def _matrix(camera: Camera, table: Mapping[str, Any]) -> Iterator[Scaled]:
             "principal point are scaled), or images were cropped"
         )
         remedy = f"Divide the first two rows of matrix by {factor:.3g}"
-    else:
-        mended = None
-        cause = "matrix is wrong, or images were cropped or shifted after the calibration"
-        remedy = "Calibrate with images of this size"
+        if factor > 1:
+            remedy += (
+                ", if images were scaled; if they were cut out of larger ones, take the offset of "
+                "the part from the principal point"
+            )
     yield Scaled(Finding("camera_matrix", Level.WARNING, seen, cause, remedy), mended)
 
 

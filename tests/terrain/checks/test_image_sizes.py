@@ -61,3 +61,24 @@ def test_matrix_of_another_resolution(faulty, world, factor):
     assert "another resolution" in found["camera_matrix"].cause
     assert "focal length" in found["camera_matrix"].cause
     assert "region_outside" not in found  # mended by that factor, the region is inside the image
+
+
+def test_a_part_of_larger_images_is_not_told_to_be_scaled(faulty):
+    """An image of 160 x 120, cut out of one of 640 x 480 whose camera has a focal length of 600."""
+    faulty.settings(camera={"matrix": [[600.0, 0, 220.0], [0, 600.0, 160.0], [0, 0, 1.0]]})
+    finding = faulty.found()["camera_matrix"]
+    assert finding.cause.startswith("Images are a part that was cut out of larger ones")
+    assert "resolution" in finding.cause
+    assert "Divide" not in finding.remedy
+
+
+def test_dividing_is_only_for_images_that_were_scaled(faulty, world):
+    faulty.settings(camera={"matrix": scaled(world.camera["matrix"], 2.0)})
+    remedy = faulty.found()["camera_matrix"].remedy
+    assert remedy.startswith("Divide the first two rows of matrix by ")
+    assert "cut out of larger ones" in remedy
+
+
+def test_a_long_focal_length_about_the_middle_is_a_crop_of_which_nothing_is_said(faulty):
+    faulty.settings(camera={"matrix": [[600.0, 0, 80.0], [0, 600.0, 60.0], [0, 0, 1.0]]})
+    assert "camera_matrix" not in faulty.found()
