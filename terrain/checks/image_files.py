@@ -13,6 +13,7 @@ import numpy as np
 from odometry.arrays import AnyArray, IntArray
 from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
+from terrain.checks.image_values import FLAT, grey_of
 from terrain.image_size import PIXELS, is_whole, stated_size
 
 FILES = 100  # read whole: at most some hundred megabytes from the disk, one at a time
@@ -145,6 +146,7 @@ def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
     groups = [list(group) for _, group in groupby(images, key=lambda image: image.digest)]
     begin_s = float(run.odometry.stamps_s[0])
     held = [group for group in groups if _travel_m(run, group) > OTHER_VIEW_M]
+    held = [group for group in held if _has_content(group[0])]
     if not held:
         return
     spans = tuple((group[0].stamp_s - begin_s, group[-1].stamp_s - begin_s) for group in held)
@@ -158,6 +160,12 @@ def frozen(run: Run, images: Sequence[SampledImage]) -> Iterator[Finding]:
         "Leave these rows out of images.csv, and check the camera's driver",
         spans,
     )
+
+
+def _has_content(image: SampledImage) -> bool:
+    """Whether an image shows something: black ones of a dark scene or a shut lens are equal too."""
+    pixels = decode(image)
+    return pixels is None or float(grey_of(pixels).std()) > FLAT
 
 
 def _travel_m(run: Run, group: Sequence[SampledImage]) -> float:

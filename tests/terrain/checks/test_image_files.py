@@ -3,6 +3,8 @@
 import struct
 import zlib
 
+import cv2
+import numpy as np
 import pytest
 
 from odometry.checks.finding import Level
@@ -58,6 +60,14 @@ def test_a_frozen_camera_is_named_with_its_time(faulty):
     assert "frozen" in finding.cause
     assert finding.seen.startswith("14 of 24 images")
     assert finding.spans_s == ((5.0, 11.5),)
+
+
+@pytest.mark.parametrize("grey", [0, 255])
+def test_black_and_white_images_are_equal_without_a_frozen_camera(faulty, grey):
+    for file in faulty.files[10:]:
+        image = np.full((120, 160, 3), grey, np.uint8)
+        file.write_bytes(cv2.imencode(".jpg", image)[1].tobytes())
+    assert "images_frozen" not in faulty.found()
 
 
 def test_equal_images_of_a_robot_that_stands_are_no_fault(faulty):
