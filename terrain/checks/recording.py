@@ -25,6 +25,7 @@ from terrain.checks.image_files import (
     sample_images,
     spread,
 )
+from terrain.checks.image_gaps import image_gaps
 from terrain.checks.image_motion import image_motion
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
@@ -93,6 +94,7 @@ def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Findin
     yield from damaged(images)
     yield from frozen(run, images)
     yield from outside_of_odometry(run)
+    yield from image_gaps(run)
     if not isinstance(table, Mapping):
         yield Finding(
             "no_camera",
