@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera import Camera
@@ -105,7 +106,7 @@ def _findings(motion: ImageMotion, camera: Camera) -> Iterator[Finding]:
     if abs(aside_rad) - unsure / size > ASIDE_RAD:
         yield _aside(float(np.degrees(aside_rad)))
     if not lens and (size - unsure > LARGER or size + unsure < 1 / LARGER):
-        yield _larger(size, camera.height_m)
+        yield _larger(size, camera.height_m, Evidence(motion.run).metres_per_metre)
 
 
 def _late(motion: ImageMotion) -> Iterator[Finding]:
@@ -153,12 +154,28 @@ def _aside(aside_deg: float) -> Finding:
     )
 
 
-def _larger(gain: float, height_m: float) -> Finding:
+def _larger(gain: float, height_m: float, by_positions: float | None) -> Finding:
+    """The treads, where positions say the same of them as the images do; else the camera."""
+    seen = f"the terrain moves {gain:.3g} times as far through the images as the treads went"
+    if by_positions is None:
+        fits_m, or_else = height_m / gain, "its pitch is off, or the treads are scaled or slip"
+    elif 1 / LARGER < gain / by_positions < LARGER:
+        size = f"{1 / gain:.2g} times too large" if gain < 1 else f"{gain:.2g} times too small"
+        return Finding(
+            "scale",
+            Level.WARNING,
+            f"{seen}, and positions go {by_positions:.3g} m for each metre of the treads",
+            f"Tread speeds are {size} (wheel radius or diameter, gear ratio), or the treads slip "
+            "so much all the way; the height of the camera fits",
+            "Compare a straight stretch with a tape measure, and correct the wheel radius",
+        )
+    else:
+        seen += f" (positions: {by_positions:.3g} times)"
+        fits_m, or_else = height_m * by_positions / gain, "its pitch is off"
     return Finding(
         "camera_height",
         Level.WARNING,
-        f"the terrain moves {gain:.3g} times as far through the images as the treads went",
-        f"The camera is not {height_m:.3g} m high: {height_m / gain:.3g} m fit (or its pitch is "
-        "off, or the treads are scaled or slip)",
+        seen,
+        f"The camera is not {height_m:.3g} m high: {fits_m:.3g} m fit (or {or_else})",
         "Find the mount with camera --from-motion, or measure its height",
     )

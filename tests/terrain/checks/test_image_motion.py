@@ -71,6 +71,30 @@ def test_another_height_of_the_camera_is_measured(drive, camera, times):
     assert fits_m == pytest.approx(1.2, rel=0.02)
 
 
+def with_treads(drive, times):
+    treads = {name: times * drive.odometry[name] for name in ("v_left", "v_right")}
+    odometer = replace(drive.odometry, columns={**drive.odometry.columns, **treads})
+    return replace(drive, odometry=odometer)
+
+
+@pytest.mark.parametrize(("times", "words"), [(1.3, "1.3 times too large"), (0.7, "too small")])
+def test_treads_that_positions_call_scaled_are_not_the_camera(drive, camera, times, words):
+    finding = found(with_treads(drive, times), camera)["scale"]
+    assert words in finding.cause
+    assert "height of the camera fits" in finding.cause
+
+
+def test_the_height_is_by_positions_where_both_are_wrong(drive, camera):
+    other = moved(camera, 2, lambda z: 2.0 * z)
+    finding = found(with_treads(drive, 1.3), other)["camera_height"]
+    assert float(finding.cause.split(": ")[1].split(" m fit")[0]) == pytest.approx(1.2, rel=0.03)
+
+
+def test_without_positions_scaled_treads_are_named_beside_the_height(drive, camera):
+    blind = replace(with_treads(drive, 1.3), pose=None, truth=None)
+    assert "treads are scaled" in found(blind, camera)["camera_height"].cause
+
+
 @pytest.mark.parametrize(("degrees", "words"), [(20, "right"), (-90, "left"), (180, "reverse")])
 def test_a_camera_that_looks_elsewhere_is_named(drive, camera, degrees, words):
     other = moved(camera, 5, lambda yaw: yaw + np.radians(degrees))
