@@ -22,12 +22,14 @@ from terrain.checks.ground_steps import (
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 from terrain.checks.terrain_views import TerrainViews
 
+# Of even motion's loss for each pair [nats], to choose between two orders, or two sides up
+SOME = 0.8
 VARIED = 1.5  # of even motion's loss for each pair [nats]: robots that wind have 2.8 to 6, a
 # straight drive has 0.7, with which the images of another straight drive agree by chance
 # Of it: own images leave 0.3 at most, by a steady camera; those of another drive 0.6 to 1.2
 UNEXPLAINED = 0.5
 ALIKE, ALIKE_S = 0.7, 1.0  # correlation of own images' turns or speeds at a lag of up to so much
-# (0.87 and more by a camera that shakes, or treads that slip; 0.3 at most by another drive)
+# (0.79 and more by a camera that shakes, or treads that slip; 0.3 at most by another drive)
 STANDING, MANY = 0.25, 0.25  # images that repeat, or treads that spin, are no images of elsewhere
 
 FEW = 0.33  # of the neighbours are recognised where images are in no order, at most
@@ -79,7 +81,8 @@ def _shows(run: Run, steps: GroundSteps) -> bool:
     if len(steps) < FEWEST_PAIRS:
         return False
     motion = ImageMotion(run, steps)
-    return varies(motion) and unexplained(motion) < UNEXPLAINED
+    moves = motion.plain_even_loss > SOME * len(steps)
+    return moves and unexplained(motion) < UNEXPLAINED
 
 
 def varies(motion: ImageMotion) -> bool:

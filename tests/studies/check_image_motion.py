@@ -27,10 +27,10 @@ from terrain.synthetic import SynthesisConfig, synthesise
 
 RIGHT = {"late": "images_late", "height": "camera_height", "yaw": "camera_yaw"}
 RIGHT |= {
-    "half a run off": "images_unrelated",
+    "half a run off": "images_unordered",
     "reversed": "images_reversed",
     "as it is": "",
-    "pitch": "",
+    "pitch": "camera_lens",
 }
 
 

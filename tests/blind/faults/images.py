@@ -130,6 +130,19 @@ def backwards(recording, rng):  # noqa: ARG001
     return recording.with_columns("images", file=recording["images"]["file"][::-1].copy())
 
 
+def disorder(recording, rng):
+    """Files sorted by the text of their numbers, or in no order."""
+    files = recording["images"]["file"]
+    places = sorted(range(len(files)), key=str)
+    if len(files) <= 10 or rng.random() < 0.5:
+        places = rng.permutation(len(files))
+    return recording.with_columns("images", file=files[places])
+
+
+def turn_over(pixels, setting, rng):  # noqa: ARG001
+    return cv2.flip(pixels, -1)
+
+
 def mirror(pixels, setting, rng):  # noqa: ARG001
     return cv2.flip(pixels, 1)
 
@@ -144,6 +157,18 @@ def wrong_yaw(recording, rng):
     mount = camera(recording)["mount"]
     turn = rng.choice([-1, 1]) * rng.uniform(0.35, 1.6)
     return with_camera(recording, "mount", [*mount[:5], float(mount[5] + turn)])
+
+
+def wrong_pitch(recording, rng):
+    mount = camera(recording)["mount"]
+    turn = rng.choice([-1, 1]) * rng.uniform(0.1, 0.2)
+    return with_camera(recording, "mount", [*mount[:4], float(mount[4] + turn), mount[5]])
+
+
+def wrong_focal_length(recording, rng):
+    times = float(rng.choice([0.5, 0.75, 1.35, 2.0]))
+    (f_x, _, u), (_, f_y, v), last = camera(recording)["matrix"]
+    return with_camera(recording, "matrix", [[times * f_x, 0.0, u], [0.0, times * f_y, v], last])
 
 
 # fmt: off
@@ -182,11 +207,19 @@ FAULTS = (
           ("late", "early", "delay", "latency", "arriv", "lag"), late, IMAGES),
     Fault("images_backwards", "warning", "images.csv names the files from last to first.",
           ("order", "revers", "backward"), backwards, IMAGES),
+    Fault("images_in_disorder", "warning", "images.csv names the files in another order.",
+          ("order", "mixed", "sorted"), disorder, IMAGES),
+    Fault("images_upside_down", "warning", "Images are turned by half a turn.",
+          ("upside", "half a turn", "180"), _encoded(turn_over, ".png"), IMAGES),
     Fault("images_mirrored", "warning", "Images are mirrored, left is right.",
           ("mirror", "flip"), _encoded(mirror, ".png"), IMAGES),
     Fault("camera_of_another_height", "warning", "The mount's height is wrong by a factor.",
           ("high", "height"), wrong_height, IMAGES),
     Fault("camera_of_another_yaw", "warning", "The mount's yaw is off by 20 degrees and more.",
           ("yaw", "looks", "side", "direction"), wrong_yaw, IMAGES),
+    Fault("camera_of_another_pitch", "warning", "The mount's pitch is off by 6 to 11 degrees.",
+          ("pitch",), wrong_pitch, IMAGES),
+    Fault("camera_of_another_focal_length", "warning", "The focal length is wrong by a factor.",
+          ("focal",), wrong_focal_length, IMAGES),
 )
 # fmt: on
