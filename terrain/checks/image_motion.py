@@ -11,6 +11,7 @@ from terrain.camera import Camera
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 from terrain.checks.lens_from_motion import wrong_lens
+from terrain.checks.moved_camera import moved_camera
 from terrain.checks.terrain_views import TerrainViews
 from terrain.checks.unrelated_images import (
     UNEXPLAINED,
@@ -92,7 +93,7 @@ def _findings(motion: ImageMotion, camera: Camera) -> Iterator[Finding]:
         )
         return
     yield from _late(motion)
-    lens = list(wrong_lens(motion, camera))
+    lens = list(moved_camera(motion, camera)) or list(wrong_lens(motion, camera))
     yield from lens
     found, best = motion.by_lag, motion.best
     gain, turn = complex(found.gains[best]), float(found.turns[best])

@@ -112,6 +112,14 @@ def _tried(motion: ImageMotion, camera: Camera) -> Iterator[Fitted]:
         yield Fitted(changed, loss, words + _height(changed, camera))
 
 
+def fitted_pitch(motion: ImageMotion, camera: Camera) -> float | None:
+    """The pitch [rad] that fits the steps of a motion; None where terrain does not then fit."""
+    if camera.mount is None or not motion.steps.matches:
+        return None
+    _, mounted = _Fit(motion, camera).solved(camera, [HEIGHT, PITCH, YAW])
+    return float(_mount(mounted)[4]) if _is_right(mounted, motion.steps) else None
+
+
 def _height(fitted: Camera, camera: Camera) -> str:
     ratio = fitted.height_m / camera.height_m
     if 1 / OTHER_HEIGHT < ratio < OTHER_HEIGHT:
