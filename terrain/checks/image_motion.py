@@ -47,13 +47,14 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
         others = list(unrelated_images(run, camera, views, steps))
         if others:
             return others, ""
-    if motion is None or why == _DISAGREE:
+    found: list[Finding] = []
+    if motion is not None and why == _DISAGREE:
+        found = list(wrong_lens(motion, camera, agrees=False))
+    elif motion is not None:
+        found = list(_findings(motion, camera))
+    if why and not found:
         return [], f"whether images show the motion of the treads: {why}"
-    found = list(_findings(motion, camera))
-    return (
-        found,
-        f"whether images show the motion of the treads: {why}" if why and not found else "",
-    )
+    return found, ""
 
 
 _DISAGREE = (

@@ -35,17 +35,18 @@ HEIGHT, PITCH, YAW = 0, 2, 3  # places of height, roll, pitch and yaw
 OTHER_HEIGHT = 1.2  # a factor that is told, as for the height alone
 
 
-def wrong_lens(motion: ImageMotion, camera: Camera) -> Iterator[Finding]:
+def wrong_lens(motion: ImageMotion, camera: Camera, *, agrees: bool = True) -> Iterator[Finding]:
     """Name the pitch or the focal length that fits, where those of `[camera]` do not; at most one.
 
     A turn of the robot and its way change no size of the terrain: where most pairs of images say
-    they do, the ground is projected wrongly.
+    they do, the ground is projected wrongly. No number is fitted where the motion in images does
+    not agree with that of the treads.
     """
     steps = motion.steps
     middle, spread_of = steps.scale
     if abs(middle) < max(RESIZED, SURE * 1.25 * spread_of / np.sqrt(len(steps))):
         return
-    found = sorted(_tried(motion, camera), key=lambda one: one.loss)
+    found = sorted(_tried(motion, camera), key=lambda one: one.loss) if agrees else []
     explains = bool(found) and _is_right(found[0].camera, steps)
     if not explains and abs(middle) < FAR:
         return

@@ -9,6 +9,7 @@ import pytest
 import odometry
 from odometry.run import Run
 from terrain.camera import Camera
+from terrain.checks import image_motion as image_motion_module
 from terrain.checks import lens_from_motion
 from terrain.checks.ground_steps import GroundSteps
 from terrain.checks.image_motion import image_motion
@@ -84,6 +85,14 @@ def test_what_no_single_number_mends_is_another_camera(drive, camera):
         other.image_size, other.matrix, other.distortion, other.ground_to_image
     )
     assert causes(drive, other)["camera_lens"] == lens_from_motion.OTHER_CAMERA
+
+
+def test_a_lens_far_off_is_named_where_nothing_agrees(drive, camera, monkeypatch):
+    monkeypatch.setattr(image_motion_module, "EXPLAINED", 0.0)
+    assert causes(drive, scaled(camera, 2.0, 2.0))["camera_lens"] == lens_from_motion.OTHER_CAMERA
+    findings, skipped = image_motion(drive, scaled(camera, 1.2, 1.2))
+    assert findings == []
+    assert "do not agree" in skipped
 
 
 def test_without_a_gyroscope_the_pitch_is_named_as_well(drive, camera):
