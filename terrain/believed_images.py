@@ -15,6 +15,8 @@ ELSEWHERE = frozenset(
 def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]:
     """The options of a run, without vision where its images show other terrain.
 
+    A published system (a preset) is what it is, and keeps its camera.
+
     Parameters
     ----------
     options : RunOptions
@@ -28,7 +30,7 @@ def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]
         Why vision is left out, or "".
     """
     found = [finding for finding in report.findings if finding.name in ELSEWHERE]
-    if not found or not options.reads_images:
+    if not found or not options.reads_images or options.preset is not None:
         return options, ""
     source = None if options.source == "camera" else options.source
     said = f"vision is left out, as with --no-vision: {found[0].cause}"

@@ -40,6 +40,12 @@ def test_what_moves_labels_by_a_little_is_no_reason(name):
     assert believed(options, CheckReport(Path("a"), (found(name),))) == (options, "")
 
 
+def test_a_published_system_keeps_its_camera():
+    options = RunOptions(Config(), model=Path("a.model"), preset="chen2023")
+    report = CheckReport(Path("a"), (found("images_reversed"),))
+    assert believed(options, report) == (options, "")
+
+
 @pytest.mark.parametrize("source", ["labels", "feel"])
 def test_other_sources_stay(source):
     options = RunOptions(Config(), source=source, feel=Path("feel"))
