@@ -79,6 +79,7 @@ CATALOGUE: dict[str, str] = {
     "noisy_positions": "positions that scatter",
     "interpolated_poses": "poses between measured ones",
     "repeated_poses": "poses held between updates",
+    "pose_bursts": "stamps of arrival of the poses, in bursts",
     "pose_outage": "no poses for a while",
     "frozen_poses": "a reference that was lost",
     "pose_jumps": "positions that jump and stay",

@@ -34,6 +34,8 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "yaw_is_quaternion": YAW
     | {"yaw_jumps", "pose_late", "gyroscope_unit", "track_width", "poses_unrelated", "clocks_apart"}
     | {"yaw_reversed", "yaw_in_degrees", "pose_mirrored", "positions_mirrored"},
+    "pose_bursts": POSES
+    | {"pose_outliers", "noisy_positions", "yaw_jumps", "interpolated_poses", "yaw_bent"},
     "repeated_poses": POSES
     | YAW
     | {"yaw_in_degrees", "gyroscope_unit", "track_width", "tread_unit"},

@@ -1,4 +1,4 @@
-"""Poses that repeat the one before: a reference that was lost, or one slower than its log."""
+"""Poses that repeat the one before, or follow it at once: a lost reference, stamps of arrival."""
 
 from collections.abc import Iterator
 
@@ -11,6 +11,10 @@ from odometry.windows.spans import constant_spans, runs_of
 
 FROZEN_S = 1.5
 FROZEN_M = 5.0  # that the robot drives meanwhile by its treads, however slowly
+SHORT, MOVING = 0.25, 0.2  # of the usual period, and of the ordinary fastest tread speed
+BURSTS, LEAST_BURSTS = 0.05, 20  # share of the poses in motion, and their number
+ALONG = (0.1, 2.0)  # of the travel of the faster tread: less is no motion, more is noise
+LEAP, TIMES = 0.4, 5.0  # of a usual step, and of the travel of the treads in so short a time
 OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
 
@@ -49,6 +53,42 @@ def frozen_poses(
         "Leave these poses empty",
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans),
     )
+
+
+def pose_bursts(
+    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray
+) -> Iterator[Finding]:
+    """Poses that follow the one before at once, and lie as far from it as usual.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    stamps_s : (M,)
+    positions : (M, 2)
+    travel_m : (M,)
+        Of the treads, up to each pose.
+    """
+    lasts_s, driven_m = np.diff(stamps_s), np.diff(travel_m)
+    moved_m = np.hypot(*np.diff(positions, axis=0).T)
+    short = lasts_s < SHORT * np.median(lasts_s)
+    speed_m_s = driven_m / lasts_s
+    moving = speed_m_s > MOVING * evidence.fastest_m_s
+    at_once, usual = short & moving, ~short & moving
+    if at_once.sum() < max(LEAST_BURSTS, BURSTS * moving.sum()) or usual.sum() < LEAST_BURSTS:
+        return
+    step_m = float(np.median(moved_m[usual]))
+    along = ALONG[0] < step_m / max(float(np.median(driven_m[usual])), 1e-9) < ALONG[1]
+    leap_m = float(np.median(moved_m[at_once]))
+    if along and leap_m > LEAP * step_m and leap_m > TIMES * float(np.median(driven_m[at_once])):
+        yield Finding(
+            "pose_bursts",
+            Level.WARNING,
+            f"{100 * at_once.sum() / moving.sum():.0f} % of the poses follow the one before within "
+            f"{lasts_s[at_once].max():.2g} s, and lie {leap_m:.2g} m from it, as in a usual step",
+            "Stamps of pose.csv are those of arrival: poses were sent in bursts (buffered), not "
+            "when they were measured",
+            "Use the stamps of the sensor (header time), or spread the rows evenly",
+        )
 
 
 def _along_m(evidence: Evidence, spans_s: FloatArray) -> FloatArray:

@@ -176,3 +176,20 @@ def test_gravity_of_the_other_sign_says_nothing_of_a_gyroscope_that_is_right(sen
     kept = {n: c for n, c in run.odometry.columns.items() if n != "gyro_z"}
     run = replace(run, imu=imu, odometry=replace(run.odometry, columns=kept))
     assert warnings(run)[0] == name
+
+
+@pytest.mark.parametrize("yaw_known", [True, False])
+def test_poses_stamped_in_bursts(yaw_known):
+    run = uneven()
+    run = run if yaw_known else without_yaw(run)
+    t = run.pose["t"].copy()
+    later = np.arange(2, len(t), 3)
+    t[later] = t[later - 1] + 0.001
+    assert warnings(put(run, "pose", t=t)) == ["pose_bursts"]
+
+
+def test_stamps_that_jitter_are_no_bursts():
+    run = uneven()
+    jitter = np.random.default_rng(6).uniform(-0.4, 0.4, len(run.pose))
+    period_s = float(np.median(np.diff(run.pose.stamps_s)))
+    assert "pose_bursts" not in warnings(put(run, "pose", t=run.pose["t"] + jitter * period_s))
