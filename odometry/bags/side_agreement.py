@@ -127,10 +127,10 @@ def _of_side(
         odd = _odd_of_two(speeds[:, alive], other_side)
         first, second = alive if odd != 0 else alive[::-1]
         for one in _of_pair((names[second], names[first]), speeds[:, second], speeds[:, first]):
-            told = "or the other way round"
+            how = "or the other way round"
             if odd is not None:
-                told = "by the other side, if the robot drives ahead more than it turns on the spot"
-            yield replace(one, cause=f"{one.cause} ({told})")
+                how = "by the other side, if the robot drives ahead more than it turns on the spot"
+            yield replace(one, cause=f"{one.cause} ({how})")
 
 
 def _of_pair(names: tuple[str, str], odd: FloatArray, other: FloatArray) -> Iterator[Contradiction]:

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.checks.finding import Finding, Level, counted
 from odometry.run import Run
 
-# By the treads, without an image: terrain that is shorter than 2 m is rarely told in any case.
+# By the treads, without an image: terrain that is shorter than 2 m is rarely listed in any case.
 # Cameras that take an image for each metre or more have as long a way between all of them
 LEAST_M, TIMES, USUAL = 2.0, 5.0, 0.9
 SHOWN = 3  # gaps that are listed

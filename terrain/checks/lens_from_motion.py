@@ -32,7 +32,7 @@ FEATURES, FEATURE_PX = 1200, 1.0  # that are fitted, and how far off they are fo
 STEP_M, STEP, SWING_M, TURN_RAD = 0.01, 0.1, 0.4, 0.01
 BY_GYROSCOPE, BY_TREADS = 0.05, 0.3  # of a turn
 HEIGHT, PITCH, YAW = 0, 2, 3  # places of height, roll, pitch and yaw
-OTHER_HEIGHT = 1.2  # a factor that is told, as for the height alone
+OTHER_HEIGHT = 1.2  # a factor that is stated, as for the height alone
 
 
 def wrong_lens(motion: ImageMotion, camera: Camera, *, agrees: bool = True) -> Iterator[Finding]:
