@@ -159,10 +159,18 @@ def _aside(aside_deg: float) -> Finding:
 def _larger(gain: float, height_m: float, by_positions: float | None) -> Finding:
     """The treads, where positions say the same of them as the images do; else the camera."""
     seen = f"the terrain moves {gain:.3g} times as far through the images as the treads went"
+    size = f"{1 / gain:.2g} times too large" if gain < 1 else f"{gain:.2g} times too small"
     if by_positions is None:
-        fits_m, or_else = height_m / gain, "its pitch is off, or the treads are scaled or slip"
-    elif 1 / LARGER < gain / by_positions < LARGER:
-        size = f"{1 / gain:.2g} times too large" if gain < 1 else f"{gain:.2g} times too small"
+        return Finding(
+            "camera_height",
+            Level.WARNING,
+            seen,
+            f"The camera is not {height_m:.3g} m high: {height_m / gain:.3g} m fit; or its pitch "
+            f"is off; or tread speeds are {size}, or slip: without positions these cannot be "
+            "distinguished",
+            "Measure the height of the camera, and a straight stretch with a tape",
+        )
+    if 1 / LARGER < gain / by_positions < LARGER:
         return Finding(
             "scale",
             Level.WARNING,
@@ -171,13 +179,11 @@ def _larger(gain: float, height_m: float, by_positions: float | None) -> Finding
             "so much all the way; the height of the camera fits",
             "Compare a straight stretch with a tape measure, and correct the wheel radius",
         )
-    else:
-        seen += f" (positions: {by_positions:.3g} times)"
-        fits_m, or_else = height_m * by_positions / gain, "its pitch is off"
+    fits_m = height_m * by_positions / gain
     return Finding(
         "camera_height",
         Level.WARNING,
-        seen,
-        f"The camera is not {height_m:.3g} m high: {fits_m:.3g} m fit (or {or_else})",
+        f"{seen} (positions: {by_positions:.3g} times)",
+        f"The camera is not {height_m:.3g} m high: {fits_m:.3g} m fit (or its pitch is off)",
         "Find the mount with camera --from-motion, or measure its height",
     )

@@ -92,7 +92,7 @@ def test_the_height_is_by_positions_where_both_are_wrong(drive, camera):
 
 def test_without_positions_scaled_treads_are_named_beside_the_height(drive, camera):
     blind = replace(with_treads(drive, 1.3), pose=None, truth=None)
-    assert "treads are scaled" in found(blind, camera)["camera_height"].cause
+    assert "tread speeds are 1.3 times too large" in found(blind, camera)["camera_height"].cause
 
 
 @pytest.mark.parametrize(("degrees", "words"), [(20, "right"), (-90, "left"), (180, "reverse")])
