@@ -84,20 +84,20 @@ def sets_against_poses(result: RunResult) -> list[SetAgainstPoses]:
     pose = result.run.pose
     if pose is None or not np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1).any():
         return []
-    run = with_terrains(result.run, result.replay.stamps_s, result.replay.terrains)
+    run = _with_terrains(result.run, result.replay.stamps_s, result.replay.terrains)
     try:
         windows = windows_of([run], WindowConfig(horizon_m=HORIZON_M))
     except WindowError:
         return []
     names = [name for name in result.parameters.terrains if name in windows.terrain]
     return [
-        compared(name, windows.where(windows.terrain == name), result.parameters, run)
+        _compared(name, windows.where(windows.terrain == name), result.parameters, run)
         for name in names
         if np.count_nonzero(windows.terrain == name) >= FEWEST_WINDOWS
     ]
 
 
-def with_terrains(run: Run, stamps_s: FloatArray, terrains: Sequence[str]) -> Run:
+def _with_terrains(run: Run, stamps_s: FloatArray, terrains: Sequence[str]) -> Run:
     """A run whose rows of odometry.csv carry the terrain that was in force."""
     rows = np.searchsorted(stamps_s, run.odometry.stamps_s, side="right") - 1
     names: AnyArray = np.array(terrains, dtype=object)[np.maximum(rows, 0)]
@@ -105,7 +105,7 @@ def with_terrains(run: Run, stamps_s: FloatArray, terrains: Sequence[str]) -> Ru
     return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
-def compared(name: str, windows: Windows, parameters: ParameterSet, run: Run) -> SetAgainstPoses:
+def _compared(name: str, windows: Windows, parameters: ParameterSet, run: Run) -> SetAgainstPoses:
     """What was measured over what one terrain's parameters predict, in its windows (K)."""
     table = parameters.terrains[name]
     model = model_of(table, run.robot, f"terrain {name!r}")

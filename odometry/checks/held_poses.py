@@ -1,6 +1,7 @@
 """Poses that repeat the one before, or follow it at once: a lost reference, stamps of arrival."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,22 +20,28 @@ OFTEN = 10  # stretches of repeated poses, from which the log repeats by habit
 REPEATED = 0.3  # share of poses equal to the one before while the treads move
 
 
-def frozen_poses(
-    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray
-) -> Iterator[Finding]:
-    """Times in which poses stay and the treads go on.
+@dataclass(frozen=True)
+class PoseTrack:
+    """M measured positions in the order of time.
 
-    Parameters
+    Attributes
     ----------
-    evidence : Evidence
     stamps_s : (M,)
     positions : (M, 2)
     travel_m : (M,)
         Of the treads, up to each pose.
     """
-    period_s = float(np.median(np.diff(stamps_s)))
-    spans = constant_spans(stamps_s, positions, max(FROZEN_S, 3 * period_s))
-    driven_m = np.interp(spans, stamps_s, travel_m)
+
+    stamps_s: FloatArray
+    positions: FloatArray
+    travel_m: FloatArray
+
+
+def frozen_poses(evidence: Evidence, track: PoseTrack) -> Iterator[Finding]:
+    """Times in which poses stay and the treads go on."""
+    period_s = float(np.median(np.diff(track.stamps_s)))
+    spans = constant_spans(track.stamps_s, track.positions, max(FROZEN_S, 3 * period_s))
+    driven_m = np.interp(spans, track.stamps_s, track.travel_m)
     moved_m = driven_m[:, 1] - driven_m[:, 0] if len(spans) else np.empty(0)
     odd = moved_m > 0.15 * evidence.fastest_m_s * (spans[:, 1] - spans[:, 0])
     odd |= _along_m(evidence, spans) > FROZEN_M
@@ -55,21 +62,10 @@ def frozen_poses(
     )
 
 
-def pose_bursts(
-    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, travel_m: FloatArray
-) -> Iterator[Finding]:
-    """Poses that follow the one before at once, and lie as far from it as usual.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    stamps_s : (M,)
-    positions : (M, 2)
-    travel_m : (M,)
-        Of the treads, up to each pose.
-    """
-    lasts_s, driven_m = np.diff(stamps_s), np.diff(travel_m)
-    moved_m = np.hypot(*np.diff(positions, axis=0).T)
+def pose_bursts(evidence: Evidence, track: PoseTrack) -> Iterator[Finding]:
+    """Poses that follow the one before at once, and lie as far from it as usual."""
+    lasts_s, driven_m = np.diff(track.stamps_s), np.diff(track.travel_m)
+    moved_m = np.hypot(*np.diff(track.positions, axis=0).T)
     short = lasts_s < SHORT * np.median(lasts_s)
     speed_m_s = driven_m / lasts_s
     moving = speed_m_s > MOVING * evidence.fastest_m_s
@@ -98,10 +94,11 @@ def _along_m(evidence: Evidence, spans_s: FloatArray) -> FloatArray:
     return np.asarray(np.diff(np.interp(spans_s, evidence.stamps_s, way_m), axis=1)[:, 0])
 
 
-def repeated_poses(positions: FloatArray, travel_m: FloatArray) -> Iterator[Finding]:
+def repeated_poses(track: PoseTrack) -> Iterator[Finding]:
     """Many poses that repeat the one before, again and again: no single loss of the reference."""
-    moving = np.diff(travel_m) > 0.2 * np.quantile(np.diff(travel_m), 0.9)
-    same = (np.diff(positions, axis=0) == 0).all(axis=1)
+    driven_m = np.diff(track.travel_m)
+    moving = driven_m > 0.2 * np.quantile(driven_m, 0.9)
+    same = (np.diff(track.positions, axis=0) == 0).all(axis=1)
     if moving.sum() < 20:
         return
     share = float(same[moving].mean())

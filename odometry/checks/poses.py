@@ -8,7 +8,7 @@ from odometry.arrays import IntArray
 from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.held_poses import frozen_poses, pose_bursts, repeated_poses
+from odometry.checks.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
 from odometry.checks.steps import FAR_S, JITTER_S, JUMP_TIMES, SHOWN, moments, rate_of, step_sizes
@@ -32,10 +32,11 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     stamps_s = evidence.run.pose.stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     travel_m = evidence.travel_m(stamps_s)
-    repeated = list(repeated_poses(positions, travel_m))
-    frozen = list(frozen_poses(evidence, stamps_s, positions, travel_m))
+    track = PoseTrack(stamps_s, positions, travel_m)
+    repeated = list(repeated_poses(track))
+    frozen = list(frozen_poses(evidence, track))
     yield from repeated or frozen
-    yield from pose_bursts(evidence, stamps_s, positions, travel_m)
+    yield from pose_bursts(evidence, track)
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
     yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)

@@ -138,8 +138,8 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         f"the robot turns {turn.coefficients[2]:+.3f} rad/s and moves {along:+.3f} m/s besides "
         "what the treads say",
         f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, "
-        "a zero that was never set",
-        "Subtract what it reads while the robot is stationary",
+        "a zero that was never set; or it reads too much at times (peaks that are held)",
+        "Look what it reads while the robot is stationary: an offset stays, and can be subtracted",
         mend=changed("odometry", "v_left" if left else "v_right", lambda speed: speed - reads),
     )
 

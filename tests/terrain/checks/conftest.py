@@ -6,9 +6,24 @@ import cv2
 import numpy as np
 import pytest
 
+import odometry
+from odometry.run import Run
+from terrain.camera import Camera
 from terrain.checks.recording import check_run
 
 COUNT = 24
+
+
+@pytest.fixture(scope="session")
+def drive():
+    """The shipped drive with images; read only."""
+    return Run.read(odometry.shipped_data() / "runs" / "demo")
+
+
+@pytest.fixture(scope="session")
+def camera(drive):
+    """The camera of `drive`."""
+    return Camera.from_table(drive.settings["camera"])
 
 
 @pytest.fixture(scope="session")

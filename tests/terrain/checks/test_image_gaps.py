@@ -5,16 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import odometry
 import terrain
 from odometry.checks.finding import Level
-from odometry.run import Run
 from terrain.checks.image_gaps import image_gaps
-
-
-@pytest.fixture(scope="module")
-def drive():
-    return Run.read(odometry.shipped_data() / "runs" / "demo")
 
 
 def of_rows(run, kept):

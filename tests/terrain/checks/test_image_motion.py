@@ -7,25 +7,13 @@ import cv2
 import numpy as np
 import pytest
 
-import odometry
 import terrain
 from odometry.run import Run
-from terrain.camera import Camera
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_motion import POOR, image_motion
 from tests.studies.check_image_motion import moved, with_images
-
-
-@pytest.fixture(scope="module")
-def drive():
-    return Run.read(odometry.shipped_data() / "runs" / "demo")
-
-
-@pytest.fixture(scope="module")
-def camera(drive):
-    return Camera.from_table(drive.settings["camera"])
 
 
 def found(run, camera):

@@ -6,24 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import odometry
-from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks import image_motion as image_motion_module
 from terrain.checks import lens_from_motion
 from terrain.checks.ground_steps import GroundSteps
 from terrain.checks.image_motion import image_motion
 from tests.studies.check_image_motion import moved
-
-
-@pytest.fixture(scope="module")
-def drive():
-    return Run.read(odometry.shipped_data() / "runs" / "demo")
-
-
-@pytest.fixture(scope="module")
-def camera(drive):
-    return Camera.from_table(drive.settings["camera"])
 
 
 def scaled(camera, *by):
