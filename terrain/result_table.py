@@ -39,12 +39,10 @@ def covariance_columns(of: FloatArray) -> dict[str, FloatArray]:
 
 def uncertainty_table(uncertainty: OdometerUncertainty, reference_name: str) -> dict[str, Any]:
     """What result.json holds of it: plain values, metres and radians."""
-    noise = uncertainty.noise
+    sigmas_by_source = np.sqrt(uncertainty.noise.variances).tolist()
     return {
         "source": uncertainty.source,
-        "sigma_by_source": None
-        if noise is None
-        else dict(zip(SOURCES, np.sqrt(noise.variances).tolist(), strict=True)),
+        "sigma_by_source": dict(zip(SOURCES, sigmas_by_source, strict=True)),
         "after": [
             {
                 "distance_m": distance_m,

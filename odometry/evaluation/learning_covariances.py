@@ -1,4 +1,4 @@
-"""The error of an odometer while its filter still learns its parameters."""
+"""The error of an odometer by parameters that its filter does not know, or not yet."""
 
 from collections.abc import Iterator
 
@@ -16,16 +16,34 @@ def learning_covariances(replay: Replay, path: OpenLoopPath) -> Iterator[FloatAr
 
     The noise of an odometer is measured over the whole run. Where the filter was less sure of a
     parameter than usual (the median of the run), as it is at first, the difference of the two
-    variances acts along the path besides. The error of a parameter is taken to keep its sign
-    while it shrinks, and those of different parameters to be independent. Block by block.
+    variances acts along the path besides. Block by block.
     """
     states = [slice(state, state + 1) for state in range(Y_LEFT, STATES)]
     usual = np.array([np.median(np.square(replay.sigmas_of(of))) for of in states])
+    return _of_variances_above(usual, replay, path)
+
+
+def parameter_covariances(replay: Replay, path: OpenLoopPath) -> Iterator[FloatArray]:
+    """Covariances (k, 3, 3) of the odometer's poses by all that its filter does not know.
+
+    For a run in which no pose measured the odometer's noise. Block by block.
+    """
+    return _of_variances_above(np.zeros(STATES - Y_LEFT), replay, path)
+
+
+def _of_variances_above(
+    known: FloatArray, replay: Replay, path: OpenLoopPath
+) -> Iterator[FloatArray]:
+    """What variances of parameters above known ones (6,) do to the poses.
+
+    The error of a parameter is taken to keep its sign while its variance changes, and those of
+    different parameters to be independent.
+    """
     stamps_s = replay.stamps_s
 
     def errors(steps: slice) -> FloatArray:
         variances = np.square(replay.sigmas_of(slice(Y_LEFT, STATES), steps))
-        excess = np.sqrt(np.maximum(variances - usual, 0.0))
+        excess = np.sqrt(np.maximum(variances - known, 0.0))
         slopes = _twist_slopes(replay, steps)
         slopes *= excess[:, None, :]
         slopes *= np.diff(stamps_s[steps.start : steps.stop + 1])[:, None, None]

@@ -7,10 +7,15 @@ from functools import partial
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.blocks import blocks_of, running_sums
+from odometry.blocks import running_sums
 from odometry.estimates import Replay
-from odometry.evaluation.learning_covariances import learning_covariances
-from odometry.evaluation.odometer_noise import USUAL_NOISE, OdometerNoise, measured_noise
+from odometry.evaluation.learning_covariances import learning_covariances, parameter_covariances
+from odometry.evaluation.odometer_noise import (
+    NOISE_WITHOUT_POSES,
+    USUAL_NOISE,
+    OdometerNoise,
+    measured_noise,
+)
 from odometry.evaluation.open_loop_consistency import (
     DISTANCES_M,
     OpenLoopConsistency,
@@ -33,8 +38,9 @@ class OdometerUncertainty:
         Gives `covariances` (k, 3, 3) block after block: of a long run they do not fit in memory.
     sigmas : dict of float to (3,)
         Standard deviations after so many metres of wheel travel.
-    noise : OdometerNoise or None
-        None where the filter took in no pose: then the covariance is the filter's own.
+    noise : OdometerNoise
+    poses : int
+        How many the filter took in.
     source : str
         Where the covariance comes from, in words.
     checks : tuple of OpenLoopConsistency
@@ -47,7 +53,8 @@ class OdometerUncertainty:
 
     covariance_blocks: Callable[[], Iterable[FloatArray]]
     sigmas: dict[float, FloatArray]
-    noise: OdometerNoise | None
+    noise: OdometerNoise
+    poses: int
     source: str
     checks: tuple[OpenLoopConsistency, ...] = ()
     own_checks: tuple[OpenLoopConsistency, ...] = ()
@@ -68,7 +75,8 @@ def odometer_uncertainty(
 
     The noise of the odometer is measured between the poses that the filter accepted. It is
     checked against the truth where there is one, else each half of the run against its poses by
-    the noise of the other half.
+    the noise of the other half. Without poses it is what other recordings had without theirs, and
+    what the filter does not know of its parameters: the settings of the filter alone are too sure.
 
     Parameters
     ----------
@@ -80,52 +88,54 @@ def odometer_uncertainty(
     """
     path = path_of(replay)
     rows, poses = accepted_poses(run, replay)
-    if not len(rows):
-        own_blocks = partial(_of_filter, replay)
-        return OdometerUncertainty(
-            own_blocks,
-            _after(path, own_blocks()),
-            None,
-            "that of the filter, which took in no pose: its noise settings and what is known of "
-            "the parameters",
-        )
-    noise = measured_noise(path, rows, poses)
-    if noise is None:
-        noise = USUAL_NOISE
-        source = "usual values of other recordings: the run is too short to measure its own"
-    else:
-        source = (
-            f"measured on {noise.stretches} stretches of up to {noise.longest_m:g} m between the "
-            "poses of the run"
-        )
-    own = []
+    noise, unknown, source = _noise_of(path, rows, poses)
+    blocks = partial(_along, replay, noise, unknown)
+    own: list[OpenLoopConsistency] = []
     if truth is not None:
         checks = open_loop_consistency(path, *_true_poses(replay, truth), noise.without_reference())
     else:
         checks = consistency_by_halves(path, rows, poses)
         own = open_loop_consistency(path, rows, poses, noise) if noise.stretches else []
     return OdometerUncertainty(
-        partial(_measured, replay, noise),
-        _after(path, _along(path, replay, noise)),
-        noise,
-        source,
-        tuple(checks),
-        tuple(own),
+        blocks, _after(path, blocks()), noise, len(rows), source, tuple(checks), tuple(own)
     )
 
 
-def _of_filter(replay: Replay) -> Iterator[FloatArray]:
-    return map(replay.pose_covariances_of, blocks_of(len(replay.estimates)))
+ByParameters = Callable[[Replay, OpenLoopPath], Iterator[FloatArray]]
 
 
-def _measured(replay: Replay, noise: OdometerNoise) -> Iterator[FloatArray]:
-    return _along(path_of(replay), replay, noise)
+def _noise_of(
+    path: OpenLoopPath, rows: IntArray, poses: FloatArray
+) -> tuple[OdometerNoise, ByParameters, str]:
+    """The noise, what errors of parameters add to it, and where both come from."""
+    if not len(rows):
+        return (
+            NOISE_WITHOUT_POSES,
+            parameter_covariances,
+            "usual values of other recordings without their poses, and what the filter, which "
+            "took in no pose, does not know of the parameters",
+        )
+    noise = measured_noise(path, rows, poses)
+    if noise is None:
+        return (
+            USUAL_NOISE,
+            learning_covariances,
+            "usual values of other recordings: the run is too short to measure its own",
+        )
+    return (
+        noise,
+        learning_covariances,
+        f"measured on {noise.stretches} stretches of up to {noise.longest_m:g} m between the "
+        "poses of the run",
+    )
 
 
-def _along(path: OpenLoopPath, replay: Replay, noise: OdometerNoise) -> Iterator[FloatArray]:
+def _along(
+    replay: Replay, noise: OdometerNoise, by_parameters: ByParameters
+) -> Iterator[FloatArray]:
+    path = path_of(replay)
     start = replay.estimates[0].covariance[:3, :3]
-    learning = learning_covariances(replay, path)
-    return map(np.add, path.carried(start, noise.variances), learning)
+    return map(np.add, path.carried(start, noise.variances), by_parameters(replay, path))
 
 
 def path_of(replay: Replay) -> OpenLoopPath:

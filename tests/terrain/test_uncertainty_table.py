@@ -27,6 +27,7 @@ def test_the_table_names_its_sources_and_what_was_found():
         lambda: [np.eye(3)[None]],
         {5.0: np.array([0.1, 0.2, 0.03])},
         USUAL_NOISE,
+        80,
         "usual",
         (OpenLoopConsistency(5.0, 40, 10, 3.0, np.array([1.7, 4.7])),),
     )

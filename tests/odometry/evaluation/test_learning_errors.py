@@ -7,7 +7,7 @@ import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.transition import STATES, Y_LEFT
-from odometry.evaluation.learning_covariances import learning_covariances
+from odometry.evaluation.learning_covariances import learning_covariances, parameter_covariances
 from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay
@@ -69,3 +69,5 @@ def test_what_is_as_sure_as_ever_adds_nothing(winding):
     same = with_estimates(winding, alike)
     (found,) = learning_covariances(same, path_of(same))
     assert not found.any()
+    (found,) = parameter_covariances(same, path_of(same))
+    assert np.diag(found[-1]).min() > 0
