@@ -37,6 +37,7 @@ HARMLESS = {  # kinds of events after which the estimate is still valid
     "gyroscope_silence",
     "gyroscope_spike",
     "late_poses",
+    "noisy_positions",
     "odometry_gap",
     "pose_outage",
     "refused_poses",

@@ -1,5 +1,6 @@
 """The main job: from a run with images and odometry to terrain-aware odometry."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
+from odometry.pose_noise import with_pose_noise
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
@@ -119,6 +121,8 @@ def run_odometry(
     if effects or not (config.filter.causal or lacks_yaw(run)):
         run = robot_run(run, effects)
     run, noticed = without_pose_delay(run, config.filter)
+    filter_config, noisy = with_pose_noise(run, config.filter)
+    config, noticed = replace(config, filter=filter_config), (*noticed, *noisy)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     name, trained = _trained(model, source, vision=vision, has_feel=feel is not None)
     reader: Classifier | None = trained

@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import headings
+from odometry.checks.position_noise import noisy_positions
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import beyond_treads
 from odometry.positions.rounding import rounding_step_m
@@ -20,7 +21,6 @@ FARTHEST = 1.1  # m for each metre of the treads: no robot goes farther
 STRETCHED = (0.75, 1.1)  # the same, of positions whose stretch is undone
 COARSE_M = 0.02
 INTERPOLATED = 0.5  # share of second differences that are nothing
-NOISY_M = 0.15
 SAME_RAD = 0.003  # yaw and course this near are one thing written twice
 
 
@@ -35,7 +35,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     new = np.concatenate([[True], (np.diff(positions, axis=0) != 0).any(axis=1)])
     yield from _coarse(stamps_s[new], positions[new])
     yield from _interpolated(stamps_s, positions)
-    yield from _noisy(evidence, stamps_s)
+    yield from noisy_positions(evidence, stamps_s[new], positions[new])
     if evidence.yaw_measured:
         yield from _yaw_constant(evidence, rows)
         every = np.flatnonzero(np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1))
@@ -144,24 +144,6 @@ def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Findi
             f"{100 * share:.0f} % of the poses lie exactly on the line between their neighbours",
             "Poses are interpolated (resampled) between fewer measured ones",
             "Keep the measured ones: the others share their noise and seem too good",
-        )
-
-
-def _noisy(evidence: Evidence, stamps_s: FloatArray) -> Iterator[Finding]:
-    """Noise by second differences of neighbours, which smooth driving hardly has."""
-    scale = evidence.metres_per_metre or 1.0
-    sigma = evidence.position_sigma_m
-    step_m = scale * evidence.fastest_m_s * float(np.median(np.diff(stamps_s)))
-    if not 1 / 30 < scale < 30:  # in another unit: which of both is, is not known here
-        sigma, step_m = min(sigma, sigma / scale), 0.0
-    if sigma > NOISY_M and sigma > 0.3 * step_m:
-        yield Finding(
-            "noisy_positions",
-            Level.NOTE,
-            f"positions scatter by {sigma:.2f} m from one to the next",
-            "Positions are noisy (single-point GNSS)",
-            f"State it: --position-sigma {sigma:.2f} and a longer --horizon (identify, compare), "
-            f"[filter] position_sigma_m = {sigma:.2f} in the file of --config (run, batch)",
         )
 
 

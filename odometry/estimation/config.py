@@ -12,7 +12,8 @@ class IcrEkfConfig:
     Attributes
     ----------
     position_sigma_m, yaw_sigma_rad : float
-        Standard deviation of a measured pose.
+        Standard deviation of a measured pose. Where the positions of a recording scatter by
+        more for certain, `terrain.run_odometry` takes that (`odometry.pose_noise`).
     velocity_sigma_m_s, yaw_rate_sigma_rad_s : float
         Standard deviation of a measured velocity.
     pose_delay_s : float
@@ -52,8 +53,8 @@ class IcrEkfConfig:
     watch_sensors : bool
         Whether spikes, stuck encoders and frozen poses are noticed, kept out and flagged.
     causal : bool
-        Whether nothing later than a moment is used for it, as on a robot: no delay of poses
-        is searched for, no heading is looked for before the start, odometry has a gap where
+        Whether nothing later than a moment is used for it, as on a robot: no delay or scatter of
+        poses is searched for, no heading is looked for before the start, odometry has a gap where
         its speeds are held for long whatever other files show later, and the filter itself undoes
         the lever arm of poses. A run and `terrain.LiveOdometry` then agree to the last bit.
     detect_jumps : bool
