@@ -2,31 +2,21 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import FloatArray
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Imm
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenGround, mode_chains
-from odometry.modes.gyroscope_bias import bias_readings, with_reading
+from odometry.modes.gyroscope_bias import bias_readings
 from odometry.modes.innovation_test import Innovations, mode_fit
+from odometry.modes.mode_beliefs import ModeBeliefs, ModeEstimators
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.tempered_bank import (
-    OwnFilters,
-    TemperedBank,
-    independent_share,
-    usable_measurements,
-    with_bias,
-    with_lead,
-    with_shared_bias,
-)
+from odometry.modes.tempered_bank import independent_share, usable_measurements
 from odometry.modes.track_checks import contradictions, gyroscope_trust_of
 from odometry.run import Run
 
@@ -97,52 +87,30 @@ def follow_signals(
     chains = mode_chains(seen, mode_set.names, mode_set.dwell_s)
     in_force = np.searchsorted([one.stamp_s for one in seen], signals.stamps_s, side="right")
     independent = independent_share(signals, modes.errors_last_s)
-    size, states = len(signals), modes.model().states
-    lasting = np.zeros((count, states))
-    lasting[:, :-1] = (1 - independent) * modes.measurement_variance
-    held = np.append(np.ones(states - 1), independent)  # share of each variance that filters hold
-
-    @lru_cache(maxsize=16)
-    def filters(roughness: float) -> EkfBank:
-        return EkfBank(modes.model(roughness, independent), count)
-
-    @lru_cache(maxsize=16)
-    def estimator(chain: int, roughness: float) -> Imm:
-        bank = TemperedBank(filters(roughness), independent, modes.state_angles)
-        return Imm(bank, chains[chain].transition, modes.state_angles, config.floor)
-
-    roughness = modes.roughness(signals)
+    transitions = [chain.transition for chain in chains]
+    estimators = ModeEstimators(mode_set, transitions, independent, config.floor)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
     measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
-    readings = bias_readings(signals)
-    first = chains[in_force[0]].transition(SETTLED_S).mean(axis=0)
-    merged = modes.start(signals, independent)
-    belief = alone = ModeBelief.alike(*merged, first)
+    roughness, readings = modes.roughness(signals), bias_readings(signals)
+    size, states = len(signals), modes.model().states
+    held = np.append(np.ones(states - 1), independent)  # share of each variance that filters hold
+    lasting = np.zeros((count, states))
+    lasting[:, :-1] = (1 - independent) * modes.measurement_variance
     probabilities, squared = np.empty((size, count)), np.empty(size)
     means, sigmas = np.empty((2, size, states))
     innovations = np.full((size, count, measured.shape[1]), np.nan)
+    first = transitions[in_force[0]](SETTLED_S).mean(axis=0)
+    beliefs = ModeBeliefs.at(modes.start(signals, independent), first)
     steps: Iterable[int] = tqdm(range(size), unit="step", disable=None if show_progress else True)
     for row in steps:
-        rough = float(roughness[max(row - 1, 0)])
-        imm = estimator(int(in_force[row]), rough)
+        filters = estimators.of(int(in_force[row]), float(roughness[max(row - 1, 0)]))
         if row:
-            u = signals.tread_speeds_m_s[row - 1]
+            inputs = signals.tread_speeds_m_s[row - 1], measured[row]
             step_s = float(signals.stamps_s[row] - signals.stamps_s[row - 1])
-            belief = with_shared_bias(imm.step(belief, u, measured[row], step_s), independent)
-            own = OwnFilters(imm.bank, filters(rough))
-            alone, innovations[row] = own.step(alone, u, measured[row], step_s)
-            merged = imm.merged(belief)
-            if row in readings:
-                merged = with_reading(*merged, readings[row], independent)
-                belief = with_bias(belief, *merged)
-            led = int(probabilities[row - 1].argmax())
-            alone = with_bias(with_lead(alone, belief, led), *merged)
+            beliefs, innovations[row] = filters.step(beliefs, inputs, step_s, readings.get(row))
         if row in gap_ends:  # motion in a gap is no evidence on the modes
-            begun = ModeBelief.alike(
-                *modes.start(signals.after(row), independent), belief.probabilities
-            )
-            belief = alone = with_bias(begun, *merged)
-            merged = imm.merged(belief)
+            beliefs = filters.begun(beliefs, modes.start(signals.after(row), independent))
+        belief, merged = beliefs.together, beliefs.merged
         probabilities[row] = belief.probabilities
         variances = np.diag(merged[1]) / held + probabilities[row] @ lasting
         means[row], sigmas[row] = merged[0], np.sqrt(variances)
