@@ -9,6 +9,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.measured import robot_run, shared_measurement
 from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
+from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, withhold
@@ -116,13 +117,7 @@ def run_odometry(
         parameters = read_parameters(parameters) if parameters else ParameterSet()
     initial = initial_terrain(terrain, parameters, run.terrain)
     corrections = corrections_of(run, parameters)
-    effects = _sensor_effects(parameters)
-    # the filter itself undoes the lever arm of positions, and in time of all poses
-    if effects or not (config.filter.causal or lacks_yaw(run)):
-        run = robot_run(run, effects)
-    run, noticed = without_pose_delay(run, config.filter)
-    filter_config, noisy = with_pose_noise(run, config.filter)
-    config, noticed = replace(config, filter=filter_config), (*noticed, *noisy)
+    run, config, noticed = _prepared(run, parameters, config)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     name, trained = _trained(model, source, vision=vision, has_feel=feel is not None)
     reader: Classifier | None = trained
@@ -178,6 +173,19 @@ def run_odometry(
         BOTH if name == "camera" and feel is not None else name,
         differing,
     )
+
+
+def _prepared(
+    run: Run, parameters: ParameterSet, config: Config
+) -> tuple[Run, Config, tuple[FilterEvent, ...]]:
+    """The run and the settings of its filter, by what its poses show, and what was noticed."""
+    effects = _sensor_effects(parameters)
+    # the filter itself undoes the lever arm of positions, and in time of all poses
+    if effects or not (config.filter.causal or lacks_yaw(run)):
+        run = robot_run(run, effects)
+    run, late = without_pose_delay(run, config.filter)
+    of_filter, noisy = with_pose_noise(run, config.filter)
+    return run, replace(config, filter=of_filter), (*late, *noisy)
 
 
 def _contradictions(
