@@ -15,6 +15,7 @@ from odometry.geometry.angles import wrap
 from odometry.sensors import SILENT_S, Gyroscope, step_integrals
 
 UNKNOWN_SPEEDS = np.full(2, math.nan)
+AHEAD_S = 5.0  # of the clock: one message alone is not believed
 
 
 class LiveFrames:
@@ -33,14 +34,17 @@ class LiveFrames:
     Attributes
     ----------
     too_late : int
-        Messages that were dropped: older than a frame that was given, repeated, or without a
-        finite stamp or yaw rate. One stamp far ahead of the others makes those late.
+        Messages that were dropped: older than a frame that was given, repeated, without a
+        finite stamp or yaw rate, or alone more than 5 s ahead of the others. Where it grows,
+        clocks do not agree, or went back.
 
     Notes
     -----
     Stamps are those of measurement, in seconds of one clock; the messages of one sensor come in
-    order. The frames are the same to the last bit as those of the run folder, except for the
-    first after the samples of the gyroscope ended.
+    order. Time goes on by treads and gyroscope: an image or a pose of a clock that is ahead waits
+    for them. Where they stop, time goes on by the others, once two messages one after the other
+    are more than 5 s ahead. The frames are the same to the last bit as those of the run folder,
+    except for the first after the samples of the gyroscope ended.
 
     Examples
     --------
@@ -56,7 +60,8 @@ class LiveFrames:
         self.too_late = 0
         self._wait_s = wait_s
         self._gyroscope = LiveGyroscope() if has_gyroscope else None
-        self._latest_s = self._given_s = -math.inf
+        self._clock_s = self._given_s = -math.inf
+        self._ahead_s = math.inf  # the stamp far ahead of the clock that came last
         self._stamps_s: list[float] = []  # of what is to become frames, rising
         self._parts: dict[float, dict[str, Any]] = {}  # by stamp
         self._row = -1
@@ -70,9 +75,9 @@ class LiveFrames:
         """A yaw rate, counter-clockwise; it makes no frame."""
         if self._gyroscope is None:
             return
-        if self._gyroscope.add(stamp_s, yaw_rate_rad_s):
-            self._latest_s = max(self._latest_s, stamp_s)
-        else:
+        measured = math.isfinite(stamp_s) and math.isfinite(yaw_rate_rad_s)
+        taken = measured and self._keeps_time(stamp_s, of_motion=True)
+        if not (taken and self._gyroscope.add(stamp_s, yaw_rate_rad_s)):
             self.too_late += 1
 
     def pose(self, stamp_s: float, x: float, y: float, yaw: float = math.nan) -> None:
@@ -89,25 +94,49 @@ class LiveFrames:
 
     def ready(self) -> list[Frame]:
         """Frames that need not wait any longer, in order of time."""
-        due_s = self._latest_s - self._wait_s
+        due_s = self._clock_s - self._wait_s
         if self._gyroscope is not None:
-            silent_since_s = self._latest_s - SILENT_S
+            silent_since_s = self._clock_s - SILENT_S
             due_s = min(due_s, max(self._gyroscope.latest_s, silent_since_s))
         return self._until(due_s)
 
     def rest(self) -> list[Frame]:
         """All frames that are left, where no message will come any more."""
-        return self._until(self._latest_s)
+        return self._until(self._clock_s + AHEAD_S)
 
     def _add(self, stamp_s: float, name: str, value: FloatArray | ByteImage) -> None:
         parts = self._parts.get(stamp_s, {})
         if not self._given_s < stamp_s < math.inf or name in parts:
             self.too_late += 1
             return
-        self._latest_s = max(self._latest_s, stamp_s)
         if stamp_s not in self._parts:
             insort(self._stamps_s, stamp_s)
         self._parts[stamp_s] = parts | {name: value}
+        self._keeps_time(stamp_s, of_motion=name == "tread_speeds_m_s")
+
+    def _keeps_time(self, stamp_s: float, *, of_motion: bool) -> bool:
+        """Let time go on by a message, or drop what came alone before it from far ahead.
+
+        False where the message itself is far ahead, and the one before it was not.
+        """
+        begins = of_motion and self._clock_s == -math.inf
+        if begins or stamp_s <= self._clock_s + AHEAD_S:
+            if of_motion:
+                self._clock_s = max(self._clock_s, stamp_s)
+            if self._ahead_s != math.inf:
+                self._ahead_s = math.inf
+                self._drop_after(self._clock_s + AHEAD_S)
+            return True
+        confirmed = stamp_s >= self._ahead_s - AHEAD_S
+        self._clock_s = stamp_s if confirmed else self._clock_s
+        self._ahead_s = math.inf if confirmed else stamp_s
+        return confirmed
+
+    def _drop_after(self, end_s: float) -> None:
+        count = bisect_right(self._stamps_s, end_s)
+        for stamp_s in self._stamps_s[count:]:
+            self.too_late += len(self._parts.pop(stamp_s))
+        del self._stamps_s[count:]
 
     def _until(self, end_s: float) -> list[Frame]:
         count = bisect_right(self._stamps_s, end_s)

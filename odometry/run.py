@@ -180,44 +180,6 @@ def run_names(runs: Sequence[Run]) -> list[str]:
     return [run.name if names.count(run.name) == 1 else str(run.folder) for run in runs]
 
 
-def check_no_run_twice(runs: Sequence[Run]) -> None:
-    """Raise RunFolderError if a recording is there twice: a model would be tested on its own data.
-
-    The same folder, or copies: the same measured values row by row, whatever their stamps.
-    """
-    folders = [run.folder.resolve() for run in runs]
-    for folder in folders:
-        if folders.count(folder) > 1:
-            raise RunFolderError(
-                f"{folder} is given twice; expected each run once: none can be its own test"
-            )
-    for number, run in enumerate(runs):
-        for other in runs[:number]:
-            if _are_copies(run, other):
-                raise RunFolderError(
-                    f"{other.folder} and {run.folder} hold the same recording (all values but the "
-                    "stamps are equal); expected each run once: none can be its own test"
-                )
-
-
-def _are_copies(run: Run, other: Run) -> bool:
-    """Whether two runs of a robot have the same poses and speeds, at whatever stamps."""
-    if run.robot != other.robot or run.pose is None or other.pose is None:
-        return False
-    pairs = ((run.odometry, other.odometry), (run.pose, other.pose))
-    return all(_are_equal(one, another) for one, another in pairs)
-
-
-def _are_equal(one: Table, other: Table) -> bool:
-    if len(one) != len(other) or one.columns.keys() != other.columns.keys():
-        return False
-    return all(
-        np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
-        for name in one.columns
-        if name != "t"
-    )
-
-
 def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
     """A short name for every robot: the part before a bracket where that distinguishes them."""
     keys = list(dict.fromkeys((robot.name, robot.track_width) for robot in robots))

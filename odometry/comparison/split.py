@@ -8,7 +8,8 @@ import numpy as np
 from odometry.arrays import BoolArray
 from odometry.errors import WindowError
 from odometry.identification.stretch_fit import stretches_for
-from odometry.run import Run, check_no_run_twice, robot_labels, run_names
+from odometry.independent_runs import check_no_run_twice
+from odometry.run import Run, robot_labels, run_names
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.measured_poses import lacks_yaw

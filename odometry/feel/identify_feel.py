@@ -16,6 +16,7 @@ from odometry.feel.sensor import SensorShape
 from odometry.feel.table import FeelTable, days_of, fold_groups
 from odometry.feel.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
 from odometry.identification.identify import robot_of
+from odometry.independent_runs import check_no_run_twice
 from odometry.run import Run
 
 LEAST_RUNS = 2  # of a terrain: one to fit, one to hold out
@@ -47,7 +48,7 @@ def identify_feel(
         If fewer than two terrains are named, a terrain has fewer than two runs, or next to none of
         the time was driven.
     RunFolderError
-        If a run lacks the signals; see `feel_signals`.
+        If a run lacks the signals (see `feel_signals`), or is there twice, whole or in part.
 
     Examples
     --------
@@ -70,6 +71,7 @@ def identify_feel(
             f"window_s = {one}, expected {SHORTEST_S:g} to {LONGEST_S:g}",
         )
     robot = robot_of(runs)
+    check_no_run_twice(runs)
     windows = [[feel_windows(run, one) for run in runs] for one in lengths_s]
     tables = [_table(of) for of in windows]
     labels = main_labels(tables[0], len(runs))

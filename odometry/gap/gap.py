@@ -42,10 +42,11 @@ from odometry.gap.prepare.scenes import (
 )
 from odometry.gap.prepare.statistic import Gap, Measure, floor_of, floor_there, gap_m, gap_of
 from odometry.identification.identify import robot_of
+from odometry.independent_runs import check_no_run_twice
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
 from odometry.positions.heading import headed
-from odometry.run import Run, check_no_run_twice
+from odometry.run import Run
 from odometry.windows.dense import DenseWindows
 
 

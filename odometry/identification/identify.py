@@ -23,8 +23,9 @@ from odometry.identification.halves import (
 from odometry.identification.identification import Identification, Identified
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
+from odometry.independent_runs import check_no_run_twice
 from odometry.models.catalogue import MODELS
-from odometry.run import UNKNOWN, Robot, Run, check_no_run_twice
+from odometry.run import UNKNOWN, Robot, Run
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches

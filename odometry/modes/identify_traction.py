@@ -9,6 +9,7 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.identification.identify import robot_of
+from odometry.independent_runs import check_no_run_twice
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.mode_windows import heard_by_mode, inside, scenes_by_mode
 from odometry.modes.response import SHORTEST_LAG_S, lagged
@@ -144,6 +145,8 @@ def identify_traction_modes(
         both sides, for long enough.
     WindowError
         If a run has no window of 2 s without a gap.
+    RunFolderError
+        If a run is there twice, whole or in part.
 
     Examples
     --------
@@ -156,6 +159,7 @@ def identify_traction_modes(
     (('gravel',), (1, 2, 3, 5))
     """
     width = robot_of(runs).track_width
+    check_no_run_twice(runs)
     horizon_s, scenes = scenes_by_mode(runs, paper=paper)
     heard = heard_by_mode(runs)
     noise, of_yaw_rate = Noise(*np.sqrt(FIRST_GUESS).tolist()), FIRST_YAW_RATE_NOISE

@@ -7,6 +7,7 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
+from odometry.independent_runs import check_no_run_twice
 from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
 from odometry.modes.mode_windows import stretches_by_label
 from odometry.modes.response import Record, errors_of, fitted_response, gain_spread, growing_power
@@ -49,7 +50,7 @@ def identify_velocity_modes(
     IdentificationError
         If a run names no terrain, or less than 10 s of one are recorded.
     RunFolderError
-        If a run has no yaw rate.
+        If a run has no yaw rate, or is there twice, whole or in part.
 
     Examples
     --------
@@ -61,6 +62,7 @@ def identify_velocity_modes(
     >>> modes.names, modes.A.shape
     (('gravel',), (1, 2, 2))
     """
+    check_no_run_twice(runs)
     speeds = [forward_speed_m_s(run) for run in runs]
     records: dict[str, list[Record]] = {}
     pairs = zip(runs, speeds, strict=True)

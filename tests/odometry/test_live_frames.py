@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from odometry.live_frames import LiveFrames
+from odometry.live_frames import AHEAD_S, LiveFrames
 from odometry.run import Run
 
 
@@ -127,3 +127,52 @@ def test_a_stamp_that_is_no_number_is_dropped_and_harms_nothing(stamp_s):
     frames.gyroscope(1.1, 0.1)
     frames.treads(1.1, 0.5, 0.5)
     assert [frame.stamp_s for frame in frames.ready()] == [1.0, 1.1]
+
+
+@pytest.mark.parametrize("kind", ["treads", "gyroscope", "pose"])
+def test_one_stamp_far_ahead_is_dropped_alone(drive, kind):
+    _, messages = drive
+    whole, one_less = LiveFrames(wait_s=0.1), LiveFrames(wait_s=0.1)
+    place = [place for place, message in enumerate(messages) if message[1] == kind][7]
+    at, _, stamp_s, values = messages[place]
+    ahead = [*messages[:place], (at, kind, stamp_s + 3600.0, values), *messages[place + 1 :]]
+    found, expected = fed(whole, ahead), fed(one_less, messages[:place] + messages[place + 1 :])
+    assert whole.too_late == 1
+    assert [frame.stamp_s for frame in found] == [frame.stamp_s for frame in expected]
+    rates = [[frame.yaw_rate_rad_s for frame in each] for each in (found, expected)]
+    np.testing.assert_array_equal(*rates)
+
+
+def test_an_image_clock_that_is_ahead_does_not_stop_the_treads():
+    frames, given = LiveFrames(wait_s=0.1, has_gyroscope=False), []
+    for step in range(100):
+        frames.treads(0.1 * step, 0.5, 0.5)
+        if step % 5 == 0:
+            frames.image(0.1 * step + 2.02, np.zeros((2, 2), dtype=np.uint8))
+        given += frames.ready()
+    assert frames.too_late == 0
+    with_images = [frame.stamp_s for frame in given if frame.image is not None]
+    assert np.allclose(np.diff(with_images), 0.5)
+    assert len(given) - len(with_images) == 99
+
+
+def test_a_clock_that_jumps_for_all_sensors_is_followed():
+    frames, given = LiveFrames(wait_s=0.1), []
+    for step in range(200):
+        stamp_s = 0.1 * step + (3600.0 if step >= 100 else 0.0)
+        frames.treads(stamp_s, 0.5, 0.5)
+        frames.gyroscope(stamp_s + 0.01, 0.2)
+        given += frames.ready()
+    assert len(given) == 199  # the last waits
+    assert frames.too_late == 0
+
+
+def test_poses_keep_time_where_treads_have_stopped():
+    frames, given = LiveFrames(wait_s=0.1, has_gyroscope=False), []
+    frames.treads(0.0, 0.5, 0.5)
+    for second in range(1, 31):
+        frames.pose(float(second), second, 0.0, 0.0)
+        given += frames.ready()
+    assert given[-1].stamp_s > 30.0 - 2 * AHEAD_S
+    assert np.all(np.diff([frame.stamp_s for frame in given]) == 1.0)
+    assert frames.too_late == 0

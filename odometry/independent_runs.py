@@ -1,0 +1,98 @@
+"""Recordings that are there twice, whole or in part: a model would be tested on its own data."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from odometry.arrays import FloatArray
+from odometry.errors import RunFolderError
+from odometry.run import Run
+from odometry.table import Table
+
+ROWS = 24  # one after the other that two recordings do not share by chance
+CHANGES = 12  # of these rows: where little changes, values repeat
+FACTORS = np.random.default_rng(0).integers(1, 2**63, 512, dtype=np.uint64) * 2 + 1
+
+
+def check_no_run_twice(runs: Sequence[Run]) -> None:
+    """Raise RunFolderError if a recording is there twice, whole or in part.
+
+    The same folder; copies: the same measured values row by row, whatever their stamps; or runs
+    that overlap: `ROWS` rows one after the other of which `CHANGES` differ are the same in all
+    that both measured. Tread speeds alone may be commands, and those may be given twice.
+    """
+    folders = [run.folder.resolve() for run in runs]
+    for folder in folders:
+        if folders.count(folder) > 1:
+            raise RunFolderError(
+                f"{folder} is given twice; expected each run once: none can be its own test"
+            )
+    for number, run in enumerate(runs):
+        for other in runs[:number]:
+            shared = _shared(run, other)
+            if shared:
+                raise RunFolderError(
+                    f"{other.folder} and {run.folder} hold {shared}; expected each run once: none "
+                    "can be its own test"
+                )
+
+
+def _shared(run: Run, other: Run) -> str:
+    """What two runs of a robot have in common, in words; "" where they are independent."""
+    if run.robot != other.robot:
+        return ""
+    pairs = _measured_by_both(run, other)
+    if not pairs:
+        return ""
+    if all(_are_equal(one, another) for one, another in pairs):
+        return "the same recording (all values but the stamps are equal)"
+    if all(_overlap(one, another) for one, another in pairs):
+        return "parts of one recording that overlap (the same values row after row)"
+    return ""
+
+
+def _measured_by_both(run: Run, other: Run) -> list[tuple[Table, Table]]:
+    """Tables of both; none where nothing but tread speeds was recorded."""
+    pairs = [(run.odometry, other.odometry)]
+    for one, another in ((run.pose, other.pose), (run.imu, other.imu)):
+        if one is not None and another is not None:
+            pairs.append((one, another))
+    measured = len(pairs) > 1 or len(run.odometry.columns) > len(("t", "v_left", "v_right"))
+    return pairs if measured else []
+
+
+def _are_equal(one: Table, other: Table) -> bool:
+    if len(one) != len(other) or one.columns.keys() != other.columns.keys():
+        return False
+    return all(
+        np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
+        for name in one.columns
+        if name != "t"
+    )
+
+
+def _overlap(one: Table, other: Table) -> bool:
+    names = sorted(
+        name
+        for name in one.columns.keys() & other.columns.keys()
+        if name != "t" and one[name].dtype.kind == other[name].dtype.kind == "f"
+    )
+    return bool(names) and bool(
+        np.isin(_sequences(one.stack(*names)), _sequences(other.stack(*names))).any()
+    )
+
+
+def _sequences(values: FloatArray) -> NDArray[np.uint64]:
+    """One number for every `ROWS` rows of (N, C) one after the other in which enough changes."""
+    bits = np.ascontiguousarray(values + 0.0).view(np.uint64)
+    rows = np.asarray((bits * FACTORS[: bits.shape[1]]).sum(axis=1, dtype=np.uint64))
+    if len(rows) < ROWS:
+        return rows[:0]
+    changed = np.concatenate([[0], np.cumsum(rows[1:] != rows[:-1])])
+    enough = changed[ROWS - 1 :] - changed[: len(rows) - ROWS + 1] >= CHANGES
+    windows = np.lib.stride_tricks.sliding_window_view(rows, ROWS)
+    sums = np.zeros(len(windows), dtype=np.uint64)
+    for row in range(ROWS):
+        sums += windows[:, row] * FACTORS[-1 - row]
+    return np.asarray(sums[enough])
