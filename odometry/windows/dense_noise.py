@@ -9,7 +9,7 @@ wheel travel adds to the place and to the yaw, and of what a second adds to the 
 gyroscope reports, which follows the robot where its motion wanders.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -44,23 +44,44 @@ def wandering_turns(scene: DenseWindows) -> FloatArray:
 
 
 class Factors:
-    """F of each of the five variances, of residuals in the order x, y, yaw, gyroscope."""
+    """F of each of the five variances, of residuals in their order in a window."""
 
     def __init__(self, scene: DenseWindows) -> None:
-        motion = scene.measured
-        self._steps = steps = motion.shape[1]
-        of_poses = np.arange(3 * steps).reshape(steps, 3).T.ravel()
-        self.order = np.concatenate([of_poses, np.arange(3 * steps, scene.rows_per_window)])
-        lever = np.stack([-motion[..., 1], motion[..., 0], np.ones(motion.shape[:2])], axis=1)
+        motion, added_m = scene.measured, added_travel_m(scene)
+        self._steps = motion.shape[1]
+        lever = np.stack([-motion[..., 1], motion[..., 0], np.ones(motion.shape[:2])], axis=-1)
         self._lever = lever.reshape(len(scene), 1, -1)
-        self._added = np.sqrt(added_travel_m(scene))[..., None]
-        self._turns = wandering_turns(scene)[..., self.order]
+        self._travel_m = np.cumsum(added_m, axis=1)
+        self._added = np.sqrt(added_m)[..., None]
+        self._turns = wandering_turns(scene)
         self._seconds = np.sqrt(np.diff(scene.pose_s[scene.windows], axis=1))[..., None]
+
+    def covariance(self, variances: FloatArray) -> FloatArray:
+        """Covariance (K, R, R) that the five variances make of the residuals of each window.
+
+        The R residuals are those of n poses, three of each, then the n of a gyroscope if there is
+        one.
+        """
+        position, yaw, wander, turn, gyroscope = variances
+        steps, of_poses = self._steps, 3 * self._steps
+        size = self._turns.shape[-1]
+        lever = np.pad(self._lever, ((0, 0), (0, 0), (0, size - of_poses)))
+        swung = np.concatenate([np.sqrt(yaw) * lever, np.sqrt(turn) * self._turns], axis=1)
+        made = swung.swapaxes(1, 2) @ swung
+        j = np.arange(steps)
+        along = wander * self._travel_m[:, np.minimum(j[:, None], j)]
+        along += position * (1.0 + np.eye(steps))
+        for axis in (0, 1):
+            made[:, axis:of_poses:3, axis:of_poses:3] += along
+        yaws, turns = np.arange(2, of_poses, 3), np.arange(of_poses, size)
+        made[:, yaws, yaws] += yaw
+        made[:, turns, turns] += gyroscope * self._seconds[:, : len(turns), 0] ** 2
+        return np.asarray(made)
 
     def times(self, part: int, columns: FloatArray) -> FloatArray:
         """F' (K, c, R) of a part times columns (K, R, C)."""
         steps = self._steps
-        x, y, yaw = (columns[:, i * steps : (i + 1) * steps] for i in range(3))
+        x, y, yaw = (columns[:, axis : 3 * steps : 3] for axis in range(3))
         if part == 0:
             sums = [of.sum(axis=1, keepdims=True) for of in (x, y)]
             return np.concatenate([x, y, *sums], axis=1)
@@ -82,7 +103,7 @@ class Factors:
         inverse : (K, R, R)
             Of the covariance.
         rows : (K, R)
-            Residuals, both in this order.
+            Residuals.
         """
         weighted = inverse @ rows[..., None]
         score, information = np.zeros(len(ORDER)), np.zeros((len(ORDER), len(ORDER)))
@@ -128,39 +149,6 @@ class Noise:
         return np.append(self.variances, self.gyro_rad**2)
 
 
-def covariance_parts(scene: DenseWindows) -> Iterator[FloatArray]:
-    """Derivatives (K, R, R) of the covariance of a window's residuals by the five variances.
-
-    The R residuals are those of n poses, three of each, then the n of a gyroscope if there is one.
-    """
-    motion = scene.measured
-    count, steps, _ = motion.shape
-    of_poses, size = 3 * steps, scene.rows_per_window
-    added_m = added_travel_m(scene)
-    part = np.zeros((count, size, size))
-    part[:, :of_poses:3, :of_poses:3] = np.ones((steps, steps)) + np.eye(steps)
-    part[:, 1:of_poses:3, 1:of_poses:3] = part[:, :of_poses:3, :of_poses:3]
-    yield part
-    lever = np.stack([-motion[..., 1], motion[..., 0], np.ones((count, steps))], axis=-1)
-    lever = lever.reshape(count, -1)
-    part = np.zeros((count, size, size))
-    part[:, :of_poses, :of_poses] = lever[:, :, None] * lever[:, None, :]
-    yaws = np.arange(2, of_poses, 3)
-    part[:, yaws, yaws] += 1.0
-    yield part
-    j = np.arange(steps)
-    summed = np.cumsum(added_m, axis=1)[:, np.minimum(j[:, None], j)]
-    part = np.zeros((count, size, size))
-    part[:, :of_poses:3, :of_poses:3] = part[:, 1:of_poses:3, 1:of_poses:3] = summed
-    yield part
-    turns = wandering_turns(scene)
-    yield turns.swapaxes(1, 2) @ turns
-    part = np.zeros((count, size, size))
-    gyro = np.arange(of_poses, size)
-    part[:, gyro, gyro] = np.diff(scene.pose_s[scene.windows], axis=1)[:, : len(gyro)]
-    yield part
-
-
 def with_rounding(variances: FloatArray, scene: DenseWindows) -> FloatArray:
     """The five variances of a scene whose positions were rounded: uniform within a step."""
     known = variances.copy()
@@ -194,9 +182,11 @@ def whitening(scene: DenseWindows, noise: Noise) -> FloatArray:
     They are lower triangular.
     """
     variances = with_rounding(noise.all_variances, scene)
-    covariance = np.zeros((len(scene), *[scene.rows_per_window] * 2))
-    for variance, part in zip(variances, covariance_parts(scene), strict=True):
-        covariance += np.multiply(part, variance, out=part)
+    return _whitening(Factors(scene).covariance(variances))
+
+
+def _whitening(covariance: FloatArray) -> FloatArray:
+    """Inverse Cholesky factors (K, R, R) of covariances (K, R, R)."""
     white = np.linalg.cholesky(covariance)
     for factor in white:
         factor[:] = dtrtri(factor.T)[0].T
@@ -219,20 +209,12 @@ def estimated_noise(
         chosen.append(replace(scene, windows=scene.windows[picked]))
         rows.append(of[picked].reshape(len(picked), -1))
     factors = [Factors(scene) for scene in chosen]
-    parts = [
-        [part[:, one.order[:, None], one.order] for part in covariance_parts(scene)]
-        for scene, one in zip(chosen, factors, strict=True)
-    ]
     variances = FIRST_GUESS.copy() if start is None else start.all_variances
     for _ in range(ROUNDS):
         score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
-        for scene, one, part, of in zip(chosen, factors, parts, rows, strict=True):
-            known = with_rounding(variances, scene)
-            covariance = np.zeros_like(part[0])
-            for variance, by_variance in zip(known, part, strict=True):
-                covariance += variance * by_variance
-            inverse = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
-            scored = one.score(inverse, of[:, one.order])
+        for scene, one, of in zip(chosen, factors, rows, strict=True):
+            white = _whitening(one.covariance(with_rounding(variances, scene)))
+            scored = one.score(white.swapaxes(1, 2) @ white, of)
             score, information = score + scored[0], information + scored[1]
         step = np.linalg.lstsq(information, score, rcond=None)[0]
         before = variances
