@@ -15,7 +15,6 @@ from odometry.models.contact_balance import Balance, balance_at
 from odometry.models.contact_stance import Stance
 from odometry.models.icr import GUESSED_WIDTHS
 
-TOLERANCE = 1e-12  # of the weight
 NEAR = 1e-9  # of the weight; nearer than this, rounding decides which way the forces push
 ITERATIONS, STAGE_ITERATIONS, LAST_ITERATIONS, NEAR_ITERATIONS = 20, 4, 60, 8
 SLIP_SCALE_FALL = 0.3  # from stage to stage
@@ -33,19 +32,18 @@ def balanced_twist(stance: Stance) -> FloatArray:
     stages. What settles nowhere keeps the twist of least residual.
     """
     twist, least = descend(stance, _start(stance), ITERATIONS)
-    lost = least > TOLERANCE
+    lost = least > NEAR
     if np.any(lost):
-        twist[:, lost] = _led_by_slip_scale(stance.rows(lost))
-    return _polished(stance, twist)
+        twist[:, lost] = _led_by_slip_scale(stance.rows(np.flatnonzero(lost)))
+    return twist
 
 
 def balanced_near(stance: Stance, known: FloatArray) -> FloatArray:
     """The same from twists (3, N) that balance forces a little different, where that settles."""
     twist, least = descend(stance, known, NEAR_ITERATIONS, damping=0.0)
-    lost = least > TOLERANCE
-    twist = _polished(stance, twist)
+    lost = least > NEAR
     if np.any(lost):
-        twist[:, lost] = balanced_twist(stance.rows(lost))
+        twist[:, lost] = balanced_twist(stance.rows(np.flatnonzero(lost)))
     return twist
 
 
@@ -54,7 +52,8 @@ def descend(
 ) -> tuple[FloatArray, FloatArray]:
     """Damped Newton steps: the twist (3, N) of least residual on the way, and its size (N,).
 
-    The start counts; samples that have settled are not moved any more.
+    The start counts. Samples that are near a balance take one undamped step more, to the last
+    digit, after the size of their residual, and are not moved any more.
     """
     best, least = start.copy(), np.full(start.shape[1], np.inf)
     left = np.arange(start.shape[1])  # samples that have not settled yet
@@ -66,19 +65,22 @@ def descend(
         size = _size(stance, tried.residual)
         good = _is_good(force, tried, step) | (size < NEAR)
         twist = np.where(good, twist + step, twist)
-        closer = good & (size < least[left])
-        best[:, left[closer]], least[left[closer]] = twist[:, closer], size[closer]
-        open_ = least[left] > TOLERANCE
-        if not np.any(open_):
-            break
         force = np.where(good, tried.residual, force)
         matrix = np.where(good, tried.by_twist, matrix)
-        damped = np.where(good, _fallen(damped), np.maximum(DAMPING_RISE * damped, RAISED_DAMPING))
+        closer = np.flatnonzero(good & (size < least[left]))
+        best[:, left[closer]], least[left[closer]] = twist[:, closer], size[closer]
+        open_ = least[left] > NEAR
         if not np.all(open_):
-            left, stance = left[open_], stance.rows(open_)
+            settled = np.flatnonzero(~open_)
+            best[:, left[settled]] += solve_3x3(-matrix[..., settled], force[:, settled])
+            chosen = np.flatnonzero(open_)
+            if not len(chosen):
+                break
+            left, stance, good = left[chosen], stance.rows(chosen), good[chosen]
             twist, force, matrix, damped = (
-                array[..., open_] for array in (twist, force, matrix, damped)
+                array.take(chosen, axis=-1) for array in (twist, force, matrix, damped)
             )
+        damped = np.where(good, _fallen(damped), np.maximum(DAMPING_RISE * damped, RAISED_DAMPING))
         step = _step(stance, force, matrix, damped)
     return best, least
 
@@ -105,18 +107,13 @@ def _start(stance: Stance) -> FloatArray:
 def _led_by_slip_scale(stance: Stance) -> FloatArray:
     twist = _start(stance)
     scale = np.abs(stance.tread_speeds_m_s).max(axis=0)
-    while np.any(larger := scale > stance.slip_scale_m_s):
+    while len(larger := np.flatnonzero(scale > stance.slip_scale_m_s)):
         eased = replace(stance, slip_scale_m_s=scale).rows(larger)
         twist[:, larger], _ = descend(eased, twist[:, larger], STAGE_ITERATIONS)
         scale = SLIP_SCALE_FALL * scale
-    return descend(stance, twist, LAST_ITERATIONS)[0]
-
-
-def _polished(stance: Stance, twist: FloatArray) -> FloatArray:
-    """One undamped step where a balance is near: to the last digit."""
-    balance = balance_at(stance, twist)
-    step = solve_3x3(-balance.by_twist, balance.residual)
-    return twist + np.where(_size(stance, balance.residual) > NEAR, 0.0, step)
+    twist, least = descend(stance, twist, LAST_ITERATIONS)
+    twist[:, np.isinf(least)] = np.nan  # an input is not known
+    return twist
 
 
 def _is_good(force: FloatArray, tried: Balance, step: FloatArray) -> BoolArray:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.models.inputs import Inputs
 
 MOST_CHANGES = 50  # of which contacts press; six were enough for ten contacts a side
@@ -32,9 +32,9 @@ class Layout:
     places: FloatArray
     weights: FloatArray
 
-    def rows(self, chosen: BoolArray) -> "Layout":
-        """Some of the samples."""
-        return Layout(self.places[..., chosen], self.weights[..., chosen])
+    def rows(self, chosen: IntArray) -> "Layout":
+        """Some of the samples, by their numbers."""
+        return Layout(self.places.take(chosen, axis=-1), self.weights.take(chosen, axis=-1))
 
 
 def even_layout(contacts: FloatArray) -> Layout:
@@ -142,11 +142,12 @@ class Stance:
         """Where each coordinate (2, N) of the centre of mass is as given."""
         return np.asarray(np.abs(self.centre) < INSIDE)
 
-    def rows(self, chosen: BoolArray) -> "Stance":
-        """Some of the samples."""
+    def rows(self, chosen: IntArray) -> "Stance":
+        """Some of the samples, by their numbers."""
         fields = {name: field for name, field in vars(self).items() if name != "layout"}
         return Stance(
-            self.layout.rows(chosen), **{name: field[..., chosen] for name, field in fields.items()}
+            self.layout.rows(chosen),
+            **{name: field.take(chosen, axis=-1) for name, field in fields.items()},
         )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.models import contact
 from odometry.models.contact import Contact
 from odometry.models.contact_balance import balance_at
-from odometry.models.contact_solve import descend
+from odometry.models.contact_solve import NEAR, descend
 from odometry.models.contact_stance import stance_of
 from odometry.models.inputs import Inputs
 from odometry.run import Robot
@@ -70,7 +70,7 @@ def test_ordinary_robots_settle(rng):
 
 
 def test_a_longer_search_is_never_worse(rng):
-    """It answers with the least residual that it met, and with the size of that."""
+    """It answers with the least residual that it met, and its size; near a balance with less."""
     stance = stance_of(*wide(rng, 300))
     start = rng.normal(0, 2, (3, 300))
     before = np.inf
@@ -78,7 +78,9 @@ def test_a_longer_search_is_never_worse(rng):
         twist, least = descend(stance, start, iterations)
         rest = balance_at(stance, twist).residual
         rest[2] /= np.hypot(*stance.base_m)
-        np.testing.assert_allclose(np.linalg.norm(rest, axis=0), least, rtol=1e-9, atol=1e-13)
+        rest, near = np.linalg.norm(rest, axis=0), least < NEAR
+        np.testing.assert_allclose(rest[~near], least[~near], rtol=1e-9)
+        assert np.all(rest[near] < 1e-13)
         assert np.all(least <= before)
         before = least
 
