@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual import TREADS, WORLD, ResidualOfEachRun
+from odometry.effects.residual import TREADS, WORLD, Residual, ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.fit.fitter import Fitted, Fitter
@@ -71,10 +71,18 @@ def _losses(
     effects: Sequence[ResidualOfEachRun],
     rows: FloatArray,
 ) -> list[tuple[float, ResidualOfEachRun]]:
-    jacobian = columns_of(effects[0], simulated, measured.whiteners)
+    """Of each run by itself: its coefficients do nothing to the others."""
+    one = effects[0]
+    of_a_run = Residual(one.variable, one.terms, one.by, one.knots)
     turn = np.asarray(measured.window_of_row % PARITIES)
-    left = [by_turns(jacobian, rows, effect.spread, turn) for effect in effects]
-    return [(float(of @ of), effect) for of, effect in zip(left, effects, strict=True)]
+    spreads = [effect.spread for effect in effects]
+    losses, begin = np.zeros(len(effects)), 0
+    for scene, white in zip(simulated, measured.whiteners, strict=True):
+        jacobian = columns_of(of_a_run, [scene], [white])
+        own = slice(begin, begin := begin + len(jacobian))
+        left = by_turns(jacobian, rows[own], spreads, turn[own])
+        losses += (left**2).sum(axis=-1)
+    return list(zip(losses.tolist(), effects, strict=True))
 
 
 def _judged(fitter: Fitter, before: Fitted, effect: ResidualOfEachRun, config: GapConfig) -> Judged:

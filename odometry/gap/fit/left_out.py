@@ -50,12 +50,20 @@ def left_out_loss(jacobian: FloatArray, rows: FloatArray, measured: Measured) ->
     Rows (R,) and their Jacobian (R, P); those beyond the windows' belong to every fit.
     """
     fold_of_row = measured.folds[measured.window_of_row]
-    normal, gradient = jacobian.T @ jacobian, jacobian.T @ rows
-    ridge = RIDGE * np.trace(normal) * np.eye(len(normal))
+    columns, count = jacobian.T, len(fold_of_row)
+    parts = [np.flatnonzero(fold_of_row == fold) for fold in np.unique(fold_of_row)]
+    own = [_normal(columns[:, part], rows[part]) for part in parts]
+    known = _normal(columns[:, count:], rows[count:])
+    normal, gradient = (sum(of, at) for of, at in zip(zip(*own, strict=True), known, strict=True))
+    normal = normal + RIDGE * np.trace(normal) * np.eye(len(normal))
     loss = 0.0
-    for fold in np.unique(fold_of_row):
-        out = np.flatnonzero(fold_of_row == fold)
-        own = jacobian[out]
-        step = np.linalg.solve(normal - own.T @ own + ridge, own.T @ rows[out] - gradient)
-        loss += float(np.sum((rows[out] + own @ step) ** 2))
+    for part, (own_normal, own_gradient) in zip(parts, own, strict=True):
+        step = np.linalg.solve(normal - own_normal, own_gradient - gradient)
+        left = rows[part] @ rows[part] + step @ (2 * own_gradient + own_normal @ step)
+        loss += float(left)
     return loss
+
+
+def _normal(columns: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Normal matrix (P, P) and gradient (P,) of columns (P, R) and rows (R,)."""
+    return columns @ columns.T, columns @ rows

@@ -27,8 +27,12 @@ PARITIES = 2  # windows by turns: what a run shows by its own holds for its neig
 
 def damped(jacobian: FloatArray, rows: FloatArray, spread: float) -> FloatArray:
     """Coefficients (P,) of least squares, with so large a standard deviation about zero."""
-    normal = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / spread**2
-    return np.asarray(-np.linalg.solve(normal, jacobian.T @ rows))
+    normal = jacobian.T @ jacobian
+    return np.asarray(-np.linalg.solve(normal + _prior(normal, spread), jacobian.T @ rows))
+
+
+def _prior(normal: FloatArray, spread: float) -> FloatArray:
+    return np.eye(len(normal)) / spread**2
 
 
 def with_values_of_each_run(fitter: Fitter, before: Fitted, effect: ResidualOfEachRun) -> Fitted:
@@ -52,27 +56,31 @@ def with_values_of_each_run(fitter: Fitter, before: Fitted, effect: ResidualOfEa
     covariance[: len(others), : len(others)] = others
     covariance[len(others) :, len(others) :] = own
     linear = rows - jacobian @ values
+    parity = np.asarray(measured.window_of_row % PARITIES)
     return replace(
         before,
         effects=effects,
         covariance=covariance,
         chi_squared=measured.by_window(rows),
-        held_out=measured.by_window(by_turns(jacobian, linear, effect.spread, _parity(fitter))),
+        held_out=measured.by_window(by_turns(jacobian, linear, [effect.spread], parity)[0]),
     )
 
 
-def by_turns(jacobian: FloatArray, rows: FloatArray, spread: float, turn: IntArray) -> FloatArray:
-    """Rows (R,) that damped least squares leave, each by a fit to those of the other turn."""
-    left = np.empty_like(rows)
+def by_turns(
+    jacobian: FloatArray, rows: FloatArray, spreads: Sequence[float], turn: IntArray
+) -> FloatArray:
+    """Rows (S, R) that damped least squares leave, each by a fit to those of the other turn.
+
+    Of each of the spreads (S) of coefficients.
+    """
+    left = np.empty((len(spreads), len(rows)))
     for one in range(PARITIES):
         own = turn == one
-        values = damped(jacobian[~own], rows[~own], spread)
-        left[own] = rows[own] + jacobian[own] @ values
+        others = jacobian[~own]
+        normal, gradient = others.T @ others, others.T @ rows[~own]
+        values = [np.linalg.solve(normal + _prior(normal, s), -gradient) for s in spreads]
+        left[:, own] = rows[own] + (jacobian[own] @ np.stack(values, axis=-1)).T
     return left
-
-
-def _parity(fitter: Fitter) -> IntArray:
-    return np.asarray(fitter.measured.window_of_row % PARITIES)
 
 
 def with_values_of_run(

@@ -76,9 +76,9 @@ def test_damped_values_are_the_mean_of_normal_ones(rng):
 
 def test_by_turns_each_is_judged_by_the_others(rng):
     jacobian, rows, turn = rng.normal(size=(8, 2)), rng.normal(size=8), np.arange(8) % 2
-    found = by_turns(jacobian, rows, 0.5, turn)
-    values = damped(jacobian[turn == 1], rows[turn == 1], 0.5)
-    np.testing.assert_allclose(found[turn == 0], (rows + jacobian @ values)[turn == 0])
+    for spread, found in zip((0.5, 0.1), by_turns(jacobian, rows, (0.5, 0.1), turn), strict=True):
+        values = damped(jacobian[turn == 1], rows[turn == 1], spread)
+        np.testing.assert_allclose(found[turn == 0], (rows + jacobian @ values)[turn == 0])
 
 
 def test_a_plain_smooth_function_is_judged_as_it_is(pushed, known):
