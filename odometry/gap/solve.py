@@ -85,10 +85,10 @@ def least_squares(
     rows = rows_at(values)
     damping = 1e-4
     for _ in range(iterations):
-        scaled = derivative(rows_at, values, rows, scales, bounds) * scales
-        gradient = scaled.T @ rows
+        jacobian = derivative(rows_at, values, rows, scales, bounds)
+        gradient = scales * (jacobian.T @ rows)
         held = ((values <= low) & (gradient > 0)) | ((values >= high) & (gradient < 0))
-        normal = scaled.T @ scaled
+        normal = np.outer(scales, scales) * (jacobian.T @ jacobian)
         cost = float(rows @ rows)
         gained = 0.0
         while damping < LARGEST_DAMPING:
@@ -121,4 +121,5 @@ def with_jacobian(
     low, high = bounds
     held = (found.values <= low) | (found.values >= high)
     jacobian = derivative(rows_at, found.values, found.rows, scales, bounds)
-    return Solved(found.values, found.rows, np.where(held, 0.0, jacobian))
+    jacobian = np.where(held, 0.0, jacobian) if held.any() else jacobian
+    return Solved(found.values, found.rows, jacobian)

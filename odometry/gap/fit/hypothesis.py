@@ -135,12 +135,10 @@ class Hypothesis:
     ) -> FloatArray:
         """Derivative (R, V) of `rows` by the values; see `odometry.gap.solve.differences`."""
         steps, measured = steps_within(values, scales, bounds), self.measured
-        of_windows = whitened_derivative(
-            self.split, values, steps, measured.scenes, measured.whiteners
+        jacobian = whitened_derivative(
+            self.split, values, steps, measured.scenes, measured.whiteners, len(self._known)
         )
-        jacobian = np.zeros((len(values), len(rows))).T
-        jacobian[: len(of_windows)] = of_windows
-        jacobian[len(of_windows) :, steps != 0] = self._known[:, steps != 0]
+        jacobian[len(rows) - len(self._known) :, steps != 0] = self._known[:, steps != 0]
         return jacobian
 
     @cached_property

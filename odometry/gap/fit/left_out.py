@@ -31,8 +31,8 @@ def _without(
 
     `of_all` (V, V) is the normal matrix of all rows.
     """
-    own, own_rows = solved.jacobian[out], solved.rows[out]
-    normal, gradient = of_all - own.T @ own, own.T @ own_rows
+    own, own_rows = solved.jacobian.T[:, out], solved.rows[out]
+    normal, gradient = of_all - own @ own.T, own @ own_rows
     cost = solved.cost - float(own_rows @ own_rows)
     for damping in DAMPINGS:
         damped = normal + damping * np.diag(np.diag(normal)) + RIDGE * np.eye(len(normal))

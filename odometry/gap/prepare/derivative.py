@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.gap.prepare.responses import Responses, whitened
+from odometry.gap.prepare.responses import Responses, whiten
 from odometry.gap.prepare.simulate import rows_of_gyroscope, rows_of_poses
 from odometry.windows.dense import DenseWindows
 
@@ -21,18 +21,27 @@ def whitened_derivative(
     steps: FloatArray,
     scenes: Sequence[DenseWindows],
     whiteners: Sequence[FloatArray],
+    more: int = 0,
 ) -> FloatArray:
-    """Derivative (R, V) of `whitened_residuals` by values (V,), over steps (V,); 0: not taken."""
+    """Derivative (R, V) of `whitened_residuals` by values (V,), over steps (V,); 0: not taken.
+
+    With so many `more` rows of zeros, for what else is known of the values.
+    """
     free = np.flatnonzero(steps)
     here = at(values)
     stepped = [at(values + step) for step in np.diag(steps)[free]]
-    found = [
-        whitened(white, _of_scene(here, stepped, steps[free], scene))
-        for scene, white in zip(scenes, whiteners, strict=True)
-    ]
-    jacobian = np.zeros((len(values), sum(map(len, found)))).T
-    jacobian[:, free] = np.concatenate(found)
-    return jacobian
+    rows = sum(len(scene) * scene.rows_per_window for scene in scenes)
+    jacobian = np.zeros((len(values), rows + more))
+    taken = jacobian if len(free) == len(values) else np.empty((len(free), rows))
+    begin = 0
+    for scene, white in zip(scenes, whiteners, strict=True):
+        columns = _of_scene(here, stepped, steps[free], scene)
+        size = columns[0].size if len(columns) else 0
+        whiten(white, columns, taken[:, begin : begin + size].reshape(columns.shape))
+        begin += size
+    if taken is not jacobian:
+        jacobian[free, :rows] = taken
+    return jacobian.T
 
 
 def _of_scene(
@@ -48,7 +57,9 @@ def _of_scene(
         changes /= steps[moving, None, None]
         columns[moving] = here.of(changes)
     for place in np.flatnonzero(~moving).tolist():
-        columns[place] = _by_sensors(here, model, stepped[place], scene) / steps[place]
+        np.divide(
+            _by_sensors(here, model, stepped[place], scene), steps[place], out=columns[place]
+        )
     return columns
 
 

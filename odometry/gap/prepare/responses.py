@@ -16,7 +16,7 @@ from odometry.windows.dense import DenseWindows, motion_from_first
 from odometry.windows.motion import linearised_level_path
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
-TOGETHER = 80  # rows of a window
+TOGETHER = 40  # rows of a window
 
 
 class Responses:
@@ -100,11 +100,17 @@ def columns_of(
 
 
 def whitened(white: FloatArray, columns: FloatArray) -> FloatArray:
-    """Columns (C, K, R) as those (K R, C) of residuals whitened by triangular matrices (K, R, R).
+    """Columns (C, K, R) as those (K R, C) of residuals whitened by triangular matrices (K, R, R)."""
+    made = np.empty_like(columns)
+    whiten(white, columns, made)
+    return made.reshape(len(columns), -1).T
+
+
+def whiten(white: FloatArray, columns: FloatArray, made: FloatArray) -> None:
+    """Put columns (C, K, R) whitened by triangular matrices (K, R, R) into an array (C, K, R).
 
     Some rows at a time: their zeros are left out, and small products are fast ones.
     """
-    made = np.empty_like(columns)
     for begin in range(0, columns.shape[-1], TOGETHER):
         rows, before = slice(begin, begin + TOGETHER), slice(begin + TOGETHER)
         np.matmul(
@@ -112,7 +118,6 @@ def whitened(white: FloatArray, columns: FloatArray) -> FloatArray:
             white[:, rows, before].swapaxes(1, 2),
             out=made[..., rows].swapaxes(0, 1),
         )
-    return made.reshape(len(columns), -1).T
 
 
 def simulated_scenes(
