@@ -143,7 +143,8 @@ class Residual(MotionEffect):
             If the variable was not recorded.
         """
         bases = self.bases(twist, inputs)
-        directions = {name: self._direction(name, twist, inputs, base) for name, _ in self.terms}
+        names = {name for name, _ in self.terms}
+        directions = {name: self._direction(name, twist, inputs, base) for name in names}
         made = np.zeros((3, len(self.terms), len(twist)))
         for place, (component, number) in enumerate(self.terms):
             basis = bases[int(component == TREADS[1])][:, number]

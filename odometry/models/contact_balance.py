@@ -83,28 +83,35 @@ class Balance:
         return np.asarray(wrench(force, stance.places_m).sum(axis=1))
 
     def by_shift(self, change: FloatArray) -> FloatArray:
-        """Change (3, N) when the centre of pressure moves (2, N), held at the edge of the base."""
+        """Change (3, ..., N) when the centre of pressure moves (2, ..., N), held at the edge."""
         at_edge = self.edge[0] * change[0] + self.edge[1] * change[1]
-        held = change - self.heading * at_edge
-        return np.asarray(self.by_centre[:, 0] * held[0] + self.by_centre[:, 1] * held[1])
+        along, across = (
+            part - heading * at_edge for part, heading in zip(change, self.heading, strict=True)
+        )
+        return np.asarray([by[0] * along + by[1] * across for by in self.by_centre])
 
     def by_pull(self, change: FloatArray) -> FloatArray:
-        """Change (3, N) of the wrench when the pull changes (2, N): its own, and of the loads."""
+        """Change (3, ..., N) of the wrench when the pull changes (2, ..., N): its own, and loads'."""
+        moved = [lever * part for lever, part in zip(self._levers, change, strict=True)]
+        return self.by_shift(np.asarray(moved)) + wrench(change, self.stance.centre_m)
+
+    @cached_property
+    def _levers(self) -> FloatArray:
+        """How far (2, N) the centre of pressure moves by the pull, in base units."""
         stance = self.stance
-        lever = self.reach * stance.height_m / (stance.normal * stance.base_m)
-        return self.by_shift(lever * change) + wrench(change, stance.centre_m)
+        return np.asarray(self.reach * stance.height_m / (stance.normal * stance.base_m))
 
     @property
     def by_twist(self) -> FloatArray:
         """Derivative (3, 3, N) of the residual by the twist."""
         x_cm, y_cm = self.stance.centre_m
         v_x, v_y = self.centre_speeds_m_s
-        omega, zero = self.omega, np.zeros_like(self.omega)
-        derivative = self._friction_by_twist()
-        pulls = (zero, -omega), (omega, zero), (v_y + omega * x_cm, omega * y_cm - v_x)
-        for column, pull in enumerate(pulls):
-            derivative[:, column] += self.by_pull(np.array(pull) / G_M_S2)
-        return derivative
+        omega = self.omega
+        pulls = np.zeros((2, 3, len(omega)))
+        pulls[0, 1], pulls[1, 0] = omega, -omega
+        pulls[0, 2], pulls[1, 2] = v_y + omega * x_cm, omega * y_cm - v_x
+        pulls /= G_M_S2
+        return self._friction_by_twist() + self.by_pull(pulls)
 
     def _friction_by_twist(self) -> FloatArray:
         """The part (3, 3, N) of the contacts' slip, which is symmetric."""

@@ -10,13 +10,12 @@ from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.prepare.simulate import measured_s, reported_of
+from odometry.gap.prepare.simulate import TOGETHER, measured_s, reported_of
 from odometry.windows.between import between
 from odometry.windows.dense import DenseWindows, motion_from_first
 from odometry.windows.motion import linearised_level_path
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
-TOGETHER = 40  # rows of a window
 
 
 class Responses:

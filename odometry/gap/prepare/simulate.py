@@ -18,6 +18,8 @@ from odometry.effects.time_course import run_numbers
 from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.motion import level_path
 
+TOGETHER = 40  # rows of a window that are whitened at once
+
 
 def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -> FloatArray:
     """Poses (M, 3) at the stamps of the measured ones, from the origin; yaw is not wrapped."""
@@ -103,10 +105,17 @@ def whitened_residuals(
     whiteners: Sequence[FloatArray],
 ) -> FloatArray:
     """Residuals (R,) of all windows, scene by scene, each scene by its whiteners (K, R, R)."""
-    return np.concatenate(
-        [
-            (white @ all_residuals(base, effects, s)[..., None])[..., 0]
-            for white, s in zip(whiteners, scenes, strict=True)
-        ],
-        axis=None,
-    )
+    found = [
+        whitened_rows(white, all_residuals(base, effects, scene)).ravel()
+        for white, scene in zip(whiteners, scenes, strict=True)
+    ]
+    return np.concatenate(found)
+
+
+def whitened_rows(white: FloatArray, rows: FloatArray) -> FloatArray:
+    """Residuals (K, R) whitened by triangular matrices (K, R, R), whose zeros are left out."""
+    made = np.empty_like(rows)
+    for begin in range(0, rows.shape[1], TOGETHER):
+        own, before = slice(begin, begin + TOGETHER), slice(begin + TOGETHER)
+        made[:, own] = (white[:, own, before] @ rows[:, before, None])[..., 0]
+    return made
