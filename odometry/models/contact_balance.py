@@ -91,7 +91,7 @@ class Balance:
         return np.asarray([by[0] * along + by[1] * across for by in self.by_centre])
 
     def by_pull(self, change: FloatArray) -> FloatArray:
-        """Change (3, ..., N) of the wrench when the pull changes (2, ..., N): its own, and loads'."""
+        """Change (3, ..., N) when the pull changes (2, ..., N): its own wrench, and the loads."""
         moved = [lever * part for lever, part in zip(self._levers, change, strict=True)]
         return self.by_shift(np.asarray(moved)) + wrench(change, self.stance.centre_m)
 

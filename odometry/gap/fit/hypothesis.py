@@ -15,7 +15,7 @@ from odometry.effects.base import Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.gap.prepare.calibration import Calibration
-from odometry.gap.prepare.derivative import whitened_derivative
+from odometry.gap.prepare.derivative import whitened_changes, whitened_derivative
 from odometry.gap.prepare.measured import Measured
 from odometry.gap.solve import (
     Bounds,
@@ -24,6 +24,7 @@ from odometry.gap.solve import (
 )
 
 RIDGE = 1e-9
+TOGETHER = 8  # starts
 
 
 @dataclass(frozen=True)
@@ -136,10 +137,38 @@ class Hypothesis:
         """Derivative (R, V) of `rows` by the values; see `odometry.gap.solve.differences`."""
         steps, measured = steps_within(values, scales, bounds), self.measured
         jacobian = whitened_derivative(
-            self.split, values, steps, measured.scenes, measured.whiteners, len(self._known)
+            self.split,
+            values,
+            steps,
+            measured.scenes,
+            measured.whiteners,
+            more=len(self._known),
         )
         jacobian[len(rows) - len(self._known) :, steps != 0] = self._known[:, steps != 0]
         return jacobian
+
+    def first_order_costs(self, starts: Sequence[FloatArray], held: BoolArray) -> FloatArray:
+        """Chi-squared (S,) that a step from each of several starts leaves, to first order.
+
+        The starts (V,) do the same: they differ in values that shape what is not there yet.
+        """
+        rows, measured = self.rows(starts[0]), self.measured
+        here, count = self.split(starts[0]), len(measured.window_of_row)
+        free = np.flatnonzero(~(held | self.shapes))
+        steps = steps_within(starts[0], self.scales, self.bounds)
+        costs = []
+        for begin in range(0, len(starts), TOGETHER):
+            others = [
+                (self.split(np.where(np.arange(len(start)) == place, start + steps, start)), step)
+                for start in starts[begin : begin + TOGETHER]
+                for place, step in zip(free, steps[free], strict=True)
+            ]
+            columns = whitened_changes(here, others, measured.scenes, measured.whiteners)
+            for own in columns.reshape(-1, len(free), count):
+                gradient = own @ rows[:count]
+                solved = np.linalg.lstsq(own @ own.T, gradient, rcond=None)[0]
+                costs.append(float(rows @ rows - gradient @ solved))
+        return np.array(costs)
 
     @cached_property
     def _known(self) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
-from odometry.gap.prepare.responses import Responses, whiten
+from odometry.gap.prepare.responses import Responses, whiten, whitened
 from odometry.gap.prepare.simulate import rows_of_gyroscope, rows_of_poses
 from odometry.windows.dense import DenseWindows
 
@@ -21,6 +21,7 @@ def whitened_derivative(
     steps: FloatArray,
     scenes: Sequence[DenseWindows],
     whiteners: Sequence[FloatArray],
+    *,
     more: int = 0,
 ) -> FloatArray:
     """Derivative (R, V) of `whitened_residuals` by values (V,), over steps (V,); 0: not taken.
@@ -44,6 +45,21 @@ def whitened_derivative(
     return jacobian.T
 
 
+def whitened_changes(
+    here: Model,
+    others: Sequence[tuple[Model, float]],
+    scenes: Sequence[DenseWindows],
+    whiteners: Sequence[FloatArray],
+) -> FloatArray:
+    """Derivatives (C, R) of `whitened_residuals` at a model, by steps to others, so long each."""
+    stepped, steps = [one for one, _ in others], np.array([step for _, step in others])
+    found = [
+        whitened(white, _of_scene(here, stepped, steps, scene)).T
+        for scene, white in zip(scenes, whiteners, strict=True)
+    ]
+    return np.concatenate(found, axis=1)
+
+
 def _of_scene(
     model: Model, stepped: Sequence[Model], steps: FloatArray, scene: DenseWindows
 ) -> FloatArray:
@@ -57,9 +73,7 @@ def _of_scene(
         changes /= steps[moving, None, None]
         columns[moving] = here.of(changes)
     for place in np.flatnonzero(~moving).tolist():
-        np.divide(
-            _by_sensors(here, model, stepped[place], scene), steps[place], out=columns[place]
-        )
+        np.divide(_by_sensors(here, model, stepped[place], scene), steps[place], out=columns[place])
     return columns
 
 

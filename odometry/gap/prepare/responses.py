@@ -99,7 +99,7 @@ def columns_of(
 
 
 def whitened(white: FloatArray, columns: FloatArray) -> FloatArray:
-    """Columns (C, K, R) as those (K R, C) of residuals whitened by triangular matrices (K, R, R)."""
+    """Columns (C, K, R) whitened by triangular matrices (K, R, R), as those (K R, C)."""
     made = np.empty_like(columns)
     whiten(white, columns, made)
     return made.reshape(len(columns), -1).T
