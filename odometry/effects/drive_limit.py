@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.held_commands import held_spans
@@ -133,25 +133,49 @@ class RateLimit(DriveLimit):
 def limited(most: float, speeds: FloatArray, time_s: FloatArray) -> FloatArray:
     """Mean speeds (N, T) of T treads that change theirs (N, T) by no more than `most` [m/s^2]."""
     held_s, starts = held_spans(time_s)
-    spans = held_s.tolist(), starts.tolist()
-    return np.stack([_limited(tread.tolist(), *spans, most) for tread in speeds.T], axis=-1)
+    return np.stack([_limited(tread, held_s, starts, most) for tread in speeds.T], axis=-1)
 
 
 def _limited(
-    commands: list[float], held_s: list[float], starts: list[bool], most: float
+    commands: FloatArray, held_s: FloatArray, starts: BoolArray, most: float
 ) -> FloatArray:
-    """Mean speeds (N,) of a tread that goes towards each held command at `most` [m/s^2]."""
-    means, speed = [], 0.0
-    for command, span_s, new in zip(commands, held_s, starts, strict=True):
-        if new:
-            speed = command
+    """Mean speeds (N,) of a tread that goes towards each held command at `most` [m/s^2].
+
+    At once where it had reached the command before, in turn from where it falls behind.
+    """
+    before = np.where(starts, commands, np.roll(commands, 1))
+    change = commands - before
+    needed_s = np.abs(change) / most if most < inf else np.zeros_like(change)
+    reached = needed_s < held_s
+    means = commands - change * needed_s / 2 / np.where(reached, held_s, 1.0)
+    if reached.all():
+        return means
+    spans = commands.tolist(), held_s.tolist(), starts.tolist()
+    done = 0
+    for first in np.flatnonzero(~reached).tolist():
+        if first >= done:
+            done = _caught_up(spans, first, float(before[first]), most, means)
+    return means
+
+
+def _caught_up(
+    spans: tuple[list[float], list[float], list[bool]],
+    first: int,
+    speed: float,
+    most: float,
+    means: FloatArray,
+) -> int:
+    """Put the means from a sample on into (N,), until the command is reached: the next sample."""
+    commands, held_s, starts = spans
+    for place in range(first, len(commands)):
+        command, span_s = commands[place], held_s[place]
+        speed = command if starts[place] else speed
         change = command - speed
         needed_s = abs(change) / most if most < inf else 0.0
-        if needed_s >= span_s:
-            after = speed + (most * span_s if change > 0 else -most * span_s)
-            means.append((speed + after) / 2)
-            speed = after
-        else:
-            means.append(command - change * needed_s / 2 / span_s)
-            speed = command
-    return np.array(means)
+        if needed_s < span_s:
+            means[place] = command - change * needed_s / 2 / span_s
+            return place + 1
+        after = speed + (most * span_s if change > 0 else -most * span_s)
+        means[place] = (speed + after) / 2
+        speed = after
+    return len(commands)
