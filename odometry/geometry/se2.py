@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, components_first, components_last
 from odometry.geometry.angles import sine_and_cosine, wrap
 
 NO_ANGLE = 1e-100  # below it quotients of angles would lose digits
@@ -22,7 +22,7 @@ def exp(displacement: FloatArray) -> FloatArray:
     (..., 3)
         Pose at the end in the body frame at the start; yaw is not wrapped.
     """
-    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    along, across, angle = components_first(np.asarray(displacement, dtype=np.float64))
     half = angle / 2
     chord = np.sinc(half / np.pi)  # it leads ahead by half the angle
     return _end(along, across, angle, chord * np.cos(half), chord**2 * half)
@@ -30,7 +30,7 @@ def exp(displacement: FloatArray) -> FloatArray:
 
 def quick_exp(displacement: FloatArray) -> FloatArray:
     """`exp` (..., 3), to some 1e-16, for many displacements (..., 3) at once."""
-    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    along, across, angle = components_first(np.asarray(displacement, dtype=np.float64))
     half = angle / 2
     half_sine, half_cosine = sine_and_cosine(half)
     chord = _chord(half, half_sine)
@@ -99,7 +99,7 @@ def exp_jacobian(displacement: FloatArray) -> FloatArray:
 
 def linearised_exp(displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
     """`exp` (..., 3), to some 1e-16, and its derivative (..., 3, 3) by displacements (..., 3)."""
-    along, across, angle = np.moveaxis(np.asarray(displacement, dtype=np.float64), -1, 0)
+    along, across, angle = components_first(np.asarray(displacement, dtype=np.float64))
     half = angle / 2
     half_sine, half_cosine = sine_and_cosine(half)
     chord = _chord(half, half_sine)
@@ -136,4 +136,4 @@ def _end(
     """End of an arc, from sin(a)/a and (1 - cos(a))/a of its angle."""
     x = sine_ratio * along - cosine_ratio * across
     y = cosine_ratio * along + sine_ratio * across
-    return np.moveaxis(np.stack([x, y, angle]), 0, -1)
+    return components_last(np.stack([x, y, angle]))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, components_first, components_last
 from odometry.geometry.angles import sine_and_cosine
 
 
@@ -43,12 +43,12 @@ def level_steps(steps: FloatArray, tilt: Tilt) -> FloatArray:
         Along and across [m] in the level frame of the start's yaw, and the change of yaw [rad].
         On level terrain the steps themselves, also where they are more than half a turn.
     """
-    dx, dy, angle = np.moveaxis(np.asarray(steps), -1, 0)
+    dx, dy, angle = components_first(np.asarray(steps))
     x_turned, y_turned = _turned_axis(angle, tilt)
     change = np.arctan2(y_turned, x_turned) - angle
     change -= 2 * np.pi * np.rint(change / (2 * np.pi))  # less than half a turn
     along = tilt.cos_pitch * dx + tilt.sin_pitch * tilt.sin_roll * dy
-    return np.moveaxis(np.stack([along, tilt.cos_roll * dy + 0 * along, angle + change]), 0, -1)
+    return components_last(np.stack([along, tilt.cos_roll * dy + 0 * along, angle + change]))
 
 
 def rises(steps: FloatArray, tilt: Tilt) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, components_last
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import LARGEST
@@ -222,7 +222,7 @@ def vectors(*entries: FloatArray) -> FloatArray:
     packed = np.empty((len(entries), *np.broadcast_shapes(*map(np.shape, entries))))
     for row, entry in enumerate(entries):
         packed[row] = entry
-    return np.moveaxis(packed, 0, -1)
+    return components_last(packed)
 
 
 def zero_matrices(stack: tuple[int, ...], rows: int, columns: int) -> FloatArray:

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray, components_first
 from odometry.models.base import vectors
 
 
@@ -133,7 +133,7 @@ def indices_under(
     force_n, x1_sign, x2_sign : (...)
         See `Indices`.
     """
-    zeta_0, zeta_1, epsilon_0, epsilon_1, eta_0, eta_1, eta_2 = np.moveaxis(coefficients, -1, 0)
+    zeta_0, zeta_1, epsilon_0, epsilon_1, eta_0, eta_1, eta_2 = components_first(coefficients)
     both = x1_sign * x2_sign
     eta = eta_0 + eta_1 * force_n * both + eta_2 * force_n**2  # eq. 27
     return Indices(
@@ -149,7 +149,7 @@ def indices_under(
 
 def by_force(coefficients: FloatArray, at: Indices) -> FloatArray:
     """Derivative (..., 3) of zeta, epsilon, eta by the force."""
-    _, zeta_1, _, epsilon_1, _, eta_1, eta_2 = np.moveaxis(coefficients, -1, 0)
+    _, zeta_1, _, epsilon_1, _, eta_1, eta_2 = components_first(coefficients)
     both = at.x1_sign * at.x2_sign
     by_eta = at.eta_is_free * (eta_1 * both + 2 * eta_2 * at.force_n)
     return vectors(zeta_1 * at.x2_sign, epsilon_1 * both, by_eta)
