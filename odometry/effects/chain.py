@@ -9,8 +9,9 @@ from odometry.effects.base import CommandEffect, MotionEffect
 from odometry.effects.base_model import Base
 from odometry.effects.contact_change import ContactChange
 from odometry.effects.corrected import Added, corrected_twist, moved_twist, with_true_speeds
+from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.residual import Residual
-from odometry.models.icr import IcrByTerrain
+from odometry.models.icr import Icr, IcrByTerrain
 from odometry.models.inputs import Inputs
 
 
@@ -32,6 +33,7 @@ class Chain:
         self.inputs = with_true_speeds(effects, recorded)
         self._twists = [base.model.twist(base.values, self.inputs)]
         self._columns: dict[int, FloatArray] = {}
+        self._inertia: dict[int, tuple[FloatArray, FloatArray]] = {}
         for added in effects:
             self._twists.append(self._with(added, self._twists[-1], base))
 
@@ -100,7 +102,11 @@ class Chain:
     def _from_base(self, base: Base, twist: FloatArray) -> FloatArray:
         """The twist (N, 3) under all effects of that of another base (N, 3)."""
         for place, added in enumerate(self.effects):
-            if isinstance(added.effect, MotionEffect) and not added.effect.answers_to:
+            columns = self._columns_of_base(place)
+            if columns is not None:
+                moved = np.tensordot(base.values - self.base.values, columns, axes=1)
+                twist = twist + self._added(place) + moved
+            elif isinstance(added.effect, MotionEffect) and not added.effect.answers_to:
                 twist = twist + self._added(place)
             else:
                 twist = self._with(added, twist, base)
@@ -124,16 +130,30 @@ class Chain:
     def _columns_of(self, added: Added, place: int, first: int) -> FloatArray | None:
         """Derivative (P, N, 3) of what an effect adds, where it is known.
 
-        That is smooth functions on the first twist that changes, and the forces of contacts.
+        That is smooth functions on the first twist that changes, inertia, and contact forces.
         """
         effect = added.effect
         if isinstance(self.base.model, IcrByTerrain) or np.array_equal(
             added.values, self.effects[place].values
         ):
             return None
+        if isinstance(effect, InertiaByIndices):
+            return self._of_inertia(place)[0]
         if place not in self._columns and isinstance(effect, ContactChange):
             values = self.effects[place].values
             self._columns[place] = effect.added_by_values(values, self.inputs, self.base)
         elif place not in self._columns and isinstance(effect, Residual) and place == first:
             self._columns[place] = effect.columns(self._twists[place], self.inputs, self.base)
         return self._columns.get(place)
+
+    def _columns_of_base(self, place: int) -> FloatArray | None:
+        """Derivative (5, N, 3) of what an effect adds by the values of the base, where known."""
+        of_icrs = type(self.base.model) is Icr
+        is_known = isinstance(self.effects[place].effect, InertiaByIndices) and of_icrs
+        return self._of_inertia(place)[1] if is_known else None
+
+    def _of_inertia(self, place: int) -> tuple[FloatArray, FloatArray]:
+        effect, values = self.effects[place].effect, self.effects[place].values
+        if place not in self._inertia and isinstance(effect, InertiaByIndices):
+            self._inertia[place] = effect.added_by_values(values, self.inputs, self.base)
+        return self._inertia[place]

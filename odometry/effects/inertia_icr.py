@@ -2,17 +2,19 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, components_first
 from odometry.effects.base import Effect, EffectParameter, MotionEffect
 from odometry.effects.base_model import Base, slip_factors, tread_icrs
 from odometry.effects.recorded import Recorded
 from odometry.effects.remembered import Remembered
 from odometry.models.icr import icr_twist
 from odometry.models.icr_inertia import IcrInertia
-from odometry.models.inertia_model import G_M_S2
+from odometry.models.inertia_forces import Column
+from odometry.models.inertia_model import G_M_S2, Turn
 from odometry.models.inputs import Inputs
 
 MODEL = IcrInertia()
+OWN = [Column.ZETA_1, Column.EPSILON_1, Column.ETA_1, Column.ETA_2, Column.H]
 
 
 class InertiaByIndices(MotionEffect):
@@ -41,7 +43,7 @@ class InertiaByIndices(MotionEffect):
 
     def __init__(self, mass: float = 1.0, track_width: float | None = None) -> None:
         self.mass, self.track_width = mass, track_width
-        self._moved = Remembered()
+        self._forces = Remembered()
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
@@ -80,8 +82,36 @@ class InertiaByIndices(MotionEffect):
         self, values: FloatArray, twist: FloatArray, inputs: Inputs, base: Base
     ) -> FloatArray:
         """See `MotionEffect.twist`."""
-        icrs, alphas = tread_icrs(base, self.name), slip_factors(base)
-        y_left, y_right, x_icr = icrs
+        packed, speeds = self._in_model(values, inputs, base)
+        moved = self._turn(packed, speeds).twist
+        return np.asarray(twist + moved - icr_twist(tread_icrs(base, self.name), speeds))
+
+    def _turn(self, packed: FloatArray, speeds: FloatArray) -> Turn:
+        inputs = Inputs(speeds)
+        force_n = self._forces.to(
+            (packed, speeds), lambda: MODEL.turn(packed, inputs).indices.force_n
+        )
+        return MODEL.turn_under(packed, inputs, force_n)
+
+    def added_by_values(
+        self, values: FloatArray, inputs: Inputs, base: Base
+    ) -> tuple[FloatArray, FloatArray]:
+        """Derivatives (P, N, 3) of what `twist` adds, and (5, N, 3) by the values of the base."""
+        packed, speeds = self._in_model(values, inputs, base)
+        moved = components_first(MODEL.jacobian(packed, self._turn(packed, speeds)))
+        by_width = moved[Column.ETA_0] / packed[Column.TRACK_WIDTH]
+        by_middle = moved[Column.EPSILON_0] / 2
+        of_base = [by_width - by_middle, -by_width - by_middle, moved[Column.ZETA_0]]
+        of_base += [moved[Column.V_LEFT] * inputs.left[:, None]]
+        of_base += [moved[Column.V_RIGHT] * inputs.right[:, None]]
+        plain = components_first(base.model.parameter_jacobian(base.values, inputs))
+        return moved[OWN], np.stack(of_base) - plain
+
+    def _in_model(
+        self, values: FloatArray, inputs: Inputs, base: Base
+    ) -> tuple[FloatArray, FloatArray]:
+        """Parameters (12,) of `IcrInertia`, and the speeds (N, 2) of treads that slip."""
+        y_left, y_right, x_icr = tread_icrs(base, self.name)
         width = self.track_width or base.robot.track_width
         zeta_1, epsilon_1, eta_1, eta_2, h = values
         coefficients = [
@@ -89,7 +119,4 @@ class InertiaByIndices(MotionEffect):
             *((y_left - y_right) / width, eta_1, eta_2),
             *(h, self.mass, 0.0, 0.0, width),
         ]
-        speeds = alphas * inputs.tread_speeds_m_s
-        packed = np.array(coefficients)
-        moved = self._moved.to((packed, speeds), lambda: MODEL.twist(packed, Inputs(speeds)))
-        return np.asarray(twist + moved - icr_twist(icrs, speeds))
+        return np.array(coefficients), slip_factors(base) * inputs.tread_speeds_m_s

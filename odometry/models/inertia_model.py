@@ -107,11 +107,11 @@ class InertiaModel(KinematicModel):
     def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:
         """See `KinematicModel.linearised`."""
         turn = self.turn(values, inputs)
-        return Linearised(turn.twist, self._jacobian(values, turn)[..., PARAMETERS])
+        return Linearised(turn.twist, self.jacobian(values, turn)[..., PARAMETERS])
 
     def speed_jacobian(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `KinematicModel.speed_jacobian`."""
-        return self._jacobian(values, self.turn(values, inputs))[..., SPEEDS]
+        return self.jacobian(values, self.turn(values, inputs))[..., SPEEDS]
 
     def guess(self, robot: Robot) -> dict[str, float]:
         """No effect of inertia on a width of 1.5 track widths, the mass in the middle."""
@@ -141,6 +141,10 @@ class InertiaModel(KinematicModel):
             limit_n,
             (lambda some: self.force_at(values, inputs.rows(some))) if in_a_row else None,
         )
+        return self.turn_under(values, inputs, force_n)
+
+    def turn_under(self, values: FloatArray, inputs: Inputs, force_n: FloatArray) -> Turn:
+        """The motion under a force of inertia (...) [N]."""
         return _turn_under(values, inputs, force_n, signs_of(values, inputs))
 
     def force_at(self, values: FloatArray, inputs: Inputs) -> ForceAt:
@@ -154,7 +158,7 @@ class InertiaModel(KinematicModel):
 
         return force_at
 
-    def _jacobian(self, values: FloatArray, turn: Turn) -> FloatArray:
+    def jacobian(self, values: FloatArray, turn: Turn) -> FloatArray:
         """Derivative (..., 3, 14) of the twist by each `Column`."""
         given_force = _turn_gradient(values, turn)
         turn_by_force = _turn_by_force(values, turn)

@@ -8,7 +8,9 @@ import pytest
 from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.curvature import Curvature
 from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.inertia_icr import InertiaByIndices
 from odometry.effects.late_treads import ActuatorLag
+from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import COMPONENTS, Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
@@ -29,6 +31,7 @@ HYPOTHESES = {
     "motion after a smooth function": (SMOOTH, SlipBySpeed()),
     "sensors": (LeverArm(), HeadingOffset(), TimeOffset(), GyroscopeError()),
     "all": (WheelScale(), Curvature(), LeverArm(), TimeOffset()),
+    "inertia": (WheelScale(), InertiaByIndices(), LateralSkid()),
     "one physics": (SlopeByContact(0.3), InertiaByContact(0.3)),
 }
 
