@@ -82,7 +82,7 @@ def _by_sensors(here: Responses, model: Model, other: Model, scene: DenseWindows
 
     What the base states of the clock of poses does nothing to the gyroscope, and the reverse.
     """
-    (base, effects), (changed, _) = model, other
+    (base, _), (changed, _) = model, other
     of_poses = 3 * (scene.windows.shape[1] - 1)
     change = np.zeros((len(scene), scene.rows_per_window))
     own, its = ((one.gyro_latency_s, one.gyro_bias_rad_s) for one in (base, changed))
@@ -90,5 +90,5 @@ def _by_sensors(here: Responses, model: Model, other: Model, scene: DenseWindows
         change[:, :of_poses] = rows_of_poses(here.path, *other, scene) - here.rows_of_poses
     if changed.latency_s == base.latency_s:
         rows = rows_of_gyroscope(here.chain.twist, *other, scene)
-        change[:, of_poses:] = rows - rows_of_gyroscope(here.chain.twist, base, effects, scene)
+        change[:, of_poses:] = rows - here.rows_of_turns
     return change

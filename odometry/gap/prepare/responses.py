@@ -1,6 +1,7 @@
 """How the residuals of windows answer to small changes of motion, to first order."""
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -10,7 +11,12 @@ from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added, reported_yaw_rate, seen_poses
 from odometry.effects.residual import Residual
-from odometry.gap.prepare.simulate import TOGETHER, measured_s, reported_of
+from odometry.gap.prepare.simulate import (
+    TOGETHER,
+    measured_s,
+    reported_of,
+    rows_of_gyroscope,
+)
 from odometry.windows.between import between
 from odometry.windows.dense import DenseWindows, motion_from_first
 from odometry.windows.motion import linearised_level_path
@@ -49,6 +55,12 @@ class Responses:
     def rows_of_poses(self) -> FloatArray:
         """Residuals (K, 3 n) of all poses of each window."""
         return (self._scene.measured - self._motion).reshape(len(self._scene), -1)
+
+    @cached_property
+    def rows_of_turns(self) -> FloatArray:
+        """Residuals (K, n) of the gyroscope; (K, 0) without one."""
+        chain = self.chain
+        return rows_of_gyroscope(chain.twist, chain.base, chain.effects, self._scene)
 
     def of(self, changes: FloatArray) -> FloatArray:
         """Derivative (C, K, R) of residuals by the size of changes (C, N, 3) of the twist."""

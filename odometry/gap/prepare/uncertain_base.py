@@ -1,12 +1,13 @@
 """The base model of a gap: by its name or from a parameter set, and what is uncertain of it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.effects.base_model import Base
 from odometry.errors import GapError, ParameterError
 from odometry.models.base import KinematicModel
@@ -43,7 +44,7 @@ class Uncertain:
     latency_is_free: bool
     has_gyroscope: bool = False
 
-    @property
+    @cached_property
     def values(self) -> FloatArray:
         """The free numbers (F,): parameters, the latency, then those of the gyroscope."""
         latency = [self.base.latency_s] if self.latency_is_free else []
@@ -62,19 +63,17 @@ class Uncertain:
 
     def at(self, values: FloatArray) -> Base:
         """The base with other free numbers (F,)."""
-        count = int(self.free.sum())
-        parameters = self.base.values.copy()
-        parameters[self.free] = values[:count]
-        latency_s = float(values[count]) if self.latency_is_free else self.base.latency_s
-        own = (self.base.gyro_latency_s, self.base.gyro_bias_rad_s)
-        gyro_latency_s, gyro_bias_rad_s = values[-2:].tolist() if self.has_gyroscope else own
-        return replace(
-            self.base,
-            values=parameters,
-            latency_s=latency_s,
-            gyro_latency_s=gyro_latency_s,
-            gyro_bias_rad_s=gyro_bias_rad_s,
-        )
+        base, count = self.base, len(self._places)
+        parameters = base.values.copy()
+        parameters[self._places] = values[:count]
+        latency_s = float(values[count]) if self.latency_is_free else base.latency_s
+        own = (base.gyro_latency_s, base.gyro_bias_rad_s)
+        own = values[-2:].tolist() if self.has_gyroscope else own
+        return Base(base.model, parameters, base.robot, latency_s, *own)
+
+    @cached_property
+    def _places(self) -> IntArray:
+        return np.flatnonzero(self.free)
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
