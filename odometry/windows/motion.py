@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray, components_first, components_last
 from odometry.geometry import se2
 from odometry.geometry.angles import sine_and_cosine
 from odometry.geometry.tilt import Tilt, level_step_jacobian, level_steps
@@ -41,11 +41,13 @@ def window_motion(model: Moving, values: FloatArray, windows: Windows) -> FloatA
 
 
 def level_path(twists: FloatArray, steps_s: FloatArray, inputs: Inputs) -> FloatArray:
-    """Poses (N, 3) before each sample, from the origin in the level frame; yaw is not wrapped.
+    """Poses (..., N, 3) before each sample, from the origin in the level frame.
+
+    Yaw is not wrapped.
 
     Parameters
     ----------
-    twists : (N, 3)
+    twists : (..., N, 3)
     steps_s : (N,)
         How long each is in force.
     inputs : Inputs
@@ -97,9 +99,9 @@ def window_motion_jacobian(model: Moving, values: FloatArray, windows: Windows) 
 class _Path(NamedTuple):
     """Steps laid end to end."""
 
-    poses: FloatArray  # (N, 3), before each step
-    after: FloatArray  # (2, N), places after each
-    sine: FloatArray  # (N,), of the yaw before each
+    poses: FloatArray  # (..., N, 3), before each step
+    after: FloatArray  # (2, ..., N), places after each
+    sine: FloatArray  # (..., N), of the yaw before each
     cosine: FloatArray
 
 
@@ -108,13 +110,14 @@ def _level(arcs: FloatArray, tilt: Tilt | None) -> FloatArray:
 
 
 def _laid(steps: FloatArray) -> _Path:
-    """The path of level steps (N, 3)."""
-    along, across, turns = steps.T
-    yaw = _summed(turns)[:-1]
+    """The paths of level steps (..., N, 3)."""
+    along, across, turns = components_first(steps)
+    yaw = _summed(turns)[..., :-1]
     sine, cosine = sine_and_cosine(yaw)
     x = _summed(cosine * along - sine * across)
     y = _summed(sine * along + cosine * across)
-    return _Path(np.stack([x[:-1], y[:-1], yaw]).T, np.stack([x[1:], y[1:]]), sine, cosine)
+    poses = components_last(np.stack([x[..., :-1], y[..., :-1], yaw]))
+    return _Path(poses, np.stack([x[..., 1:], y[..., 1:]]), sine, cosine)
 
 
 def _by_displacement(
@@ -165,8 +168,8 @@ def _between(path: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
 
 
 def _summed(steps: FloatArray) -> FloatArray:
-    """Sums (N + 1,) of the steps (N,) before each one, and of all."""
-    sums = np.empty(len(steps) + 1)
-    sums[0] = 0.0
-    np.cumsum(steps, out=sums[1:])
+    """Sums (..., N + 1) of the steps (..., N) before each one, and of all."""
+    sums = np.empty((*steps.shape[:-1], steps.shape[-1] + 1))
+    sums[..., 0] = 0.0
+    np.cumsum(steps, axis=-1, out=sums[..., 1:])
     return sums

@@ -21,7 +21,7 @@ from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses
-from odometry.gap.prepare.simulate import all_residuals
+from odometry.gap.prepare.simulate import all_residuals_of_each
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import whitening
 
@@ -35,6 +35,7 @@ LOSING: tuple[tuple[Effect, tuple[float, float]], ...] = (  # and which treads l
 )
 ROUNDS = 3  # of events and strength in turn
 TRIED = np.linspace(0.0, 0.98, 50)
+PARTS = 5  # of these: strengths of one are simulated at once
 LONGEST_SHARE = 0.6  # of the time: what is there for longer is no burst
 
 
@@ -61,8 +62,13 @@ def _best_events(
     whiteners = whitening(steps, calibration.noise)
     without = _costs(before.base, before.effects, steps, whiteners)
     by_strength = [
-        _costs(before.base, (*before.effects, _slowed(kept, sides)), steps, whiteners)
-        for kept in TRIED
+        costs
+        for tried in np.array_split(TRIED, PARTS)
+        for costs in _costs_of_each(
+            [(before.base, (*before.effects, _slowed(kept, sides))) for kept in tried],
+            steps,
+            whiteners,
+        )
     ]
     best: tuple[float, Spans] = (float(without.sum()), ())
     for start in STRENGTHS:
@@ -157,7 +163,15 @@ def _costs(
     base: Base, effects: Sequence[Added], steps: DenseWindows, whiteners: FloatArray
 ) -> FloatArray:
     """Chi-squared (S,) of each step."""
-    rows = (whiteners @ all_residuals(base, effects, steps)[..., None])[..., 0]
+    (costs,) = _costs_of_each([(base, effects)], steps, whiteners)
+    return np.asarray(costs)
+
+
+def _costs_of_each(
+    models: Sequence[tuple[Base, Sequence[Added]]], steps: DenseWindows, whiteners: FloatArray
+) -> FloatArray:
+    """The same (C, S) of several models."""
+    rows = np.einsum("sij,csj->csi", whiteners, all_residuals_of_each(models, steps))
     return np.asarray((rows**2).sum(axis=-1))
 
 

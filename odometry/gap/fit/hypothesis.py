@@ -121,10 +121,26 @@ class Hypothesis:
     def rows(self, values: FloatArray) -> FloatArray:
         """Rows of the windows, then those of what is known of the base and usual of effects."""
         base, added = self.split(values)
+        return np.concatenate([self.measured.rows(base, added), self._known_rows(values, added)])
+
+    def rows_of_each(self, values: Sequence[FloatArray]) -> FloatArray:
+        """The same (C, R) at several values (V,)."""
+        models = [self.split(each) for each in values]
+        known = [
+            self._known_rows(each, added) for each, (_, added) in zip(values, models, strict=True)
+        ]
+        return np.hstack([self.measured.rows_of_each(models), np.stack(known)])
+
+    def costs(self, values: Sequence[FloatArray]) -> FloatArray:
+        """Chi-squared (C,) at several values (V,); infinite where it is not known."""
+        costs = (self.rows_of_each(values) ** 2).sum(axis=-1)
+        return np.asarray(np.nan_to_num(costs, nan=np.inf))
+
+    def _known_rows(self, values: FloatArray, added: Sequence[Added]) -> FloatArray:
         moved = values[: self.of_base] - self.calibration.uncertain.values
         own = zip(added, own_values(self.effects), strict=True)
         unusual = [_unusual(one, self.calibration.base) for one, is_own in own if is_own]
-        return np.concatenate([self.measured.rows(base, added), self._prior @ moved, *unusual])
+        return np.concatenate([self._prior @ moved, *unusual])
 
     def derivative(
         self,

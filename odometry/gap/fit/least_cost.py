@@ -37,8 +37,7 @@ def least_cost(
 
 def _cheapest(hypothesis: Hypothesis, starts: list[FloatArray]) -> list[FloatArray]:
     """The starts of least cost as they are: values in steps hardly move in one step of a search."""
-    costs = [np.sum(hypothesis.rows(start) ** 2) for start in starts]
-    order = np.argsort(np.nan_to_num(costs, nan=np.inf), kind="stable")
+    order = np.argsort(hypothesis.costs(starts), kind="stable")
     return [starts[i] for i in order[:MOST_STARTS]]
 
 
@@ -80,7 +79,7 @@ def _after_jumps(hypothesis: Hypothesis, found: Found, held: BoolArray, jumps: B
     for _ in range(MOST_JUMPS if steps else 0):
         tried = [np.clip(found.values + step, *hypothesis.bounds) for step in steps]
         tried += [np.where(held, found.values, v) for v in hypothesis.elsewhere(found.values)]
-        costs = np.nan_to_num([np.sum(hypothesis.rows(v) ** 2) for v in tried], nan=np.inf)
+        costs = hypothesis.costs(tried)
         if costs.min() > found.cost - 1:
             break
         found = _search(hypothesis, tried[int(np.argmin(costs))], ITERATIONS, held)

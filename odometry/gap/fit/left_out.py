@@ -1,5 +1,7 @@
 """Chi-squared of windows by a fit to the others."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
@@ -16,32 +18,48 @@ def held_out(hypothesis: Hypothesis, solved: Solved) -> FloatArray:
     measured = hypothesis.measured
     fold_of_row = measured.folds[measured.window_of_row]
     judged = np.zeros(len(measured.folds))
-    normal = solved.jacobian.T @ solved.jacobian
-    for fold in np.unique(measured.folds):
-        rows = _without(hypothesis, solved, normal, np.flatnonzero(fold_of_row == fold))
+    folds = np.unique(measured.folds)
+    left = [np.flatnonzero(fold_of_row == fold) for fold in folds]
+    for fold, rows in zip(folds, _without_each(hypothesis, solved, left), strict=True):
         inside = measured.folds == fold
         judged[inside] = measured.by_window(rows[: len(fold_of_row)])[inside]
     return judged
 
 
-def _without(
-    hypothesis: Hypothesis, solved: Solved, of_all: FloatArray, out: IntArray
-) -> FloatArray:
-    """All rows by a fit to those that are not `out`: a damped step that makes them fit.
+def _without_each(
+    hypothesis: Hypothesis, solved: Solved, left: Sequence[IntArray]
+) -> list[FloatArray]:
+    """All rows by fits without some of them each: damped steps that make the others fit."""
+    normal = solved.jacobian.T @ solved.jacobian
+    found = [solved.rows] * len(left)
+    open_ = list(range(len(left)))
+    for damping in DAMPINGS:
+        values = [_stepped(hypothesis, solved, normal, left[place], damping) for place in open_]
+        tried = dict(zip(open_, hypothesis.rows_of_each(values), strict=True))
+        fits = [place for place in open_ if _others_fit(solved, tried[place], left[place])]
+        for place in fits:
+            found[place] = tried[place]
+        open_ = [place for place in open_ if place not in fits]
+        if not open_:
+            break
+    return found
 
-    `of_all` (V, V) is the normal matrix of all rows.
-    """
+
+def _stepped(
+    hypothesis: Hypothesis, solved: Solved, of_all: FloatArray, out: IntArray, damping: float
+) -> FloatArray:
+    """Values (V,) after a step without the rows `out`; the normal matrix (V, V) is of all rows."""
     own, own_rows = solved.jacobian.T[:, out], solved.rows[out]
     normal, gradient = of_all - own @ own.T, own @ own_rows
-    cost = solved.cost - float(own_rows @ own_rows)
-    for damping in DAMPINGS:
-        damped = normal + damping * np.diag(np.diag(normal)) + RIDGE * np.eye(len(normal))
-        step = np.linalg.solve(damped, gradient)
-        rows = hypothesis.rows(np.clip(solved.values + step, *hypothesis.bounds))
-        others = float(rows @ rows - rows[out] @ rows[out])
-        if others <= cost + ROUNDING * max(1.0, cost):
-            return rows
-    return solved.rows
+    damped = normal + damping * np.diag(np.diag(normal)) + RIDGE * np.eye(len(normal))
+    return np.clip(solved.values + np.linalg.solve(damped, gradient), *hypothesis.bounds)
+
+
+def _others_fit(solved: Solved, rows: FloatArray, out: IntArray) -> bool:
+    """Whether all rows but some cost no more than before."""
+    cost = solved.cost - float(solved.rows[out] @ solved.rows[out])
+    others = float(rows @ rows - rows[out] @ rows[out])
+    return others <= cost + ROUNDING * max(1.0, cost)
 
 
 def left_out_loss(jacobian: FloatArray, rows: FloatArray, measured: Measured) -> float:

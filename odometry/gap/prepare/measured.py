@@ -12,9 +12,12 @@ from odometry.effects.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.pieces import numbered_pieces
-from odometry.gap.prepare.simulate import whitened_residuals
+from odometry.gap.prepare.responses import whitened
+from odometry.gap.prepare.simulate import all_residuals_of_each, whitened_residuals
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import whitening
+
+TOGETHER = 10  # models
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,18 @@ class Measured:
     def rows(self, base: Base, effects: Sequence[Added]) -> FloatArray:
         """Whitened residuals (R,) of all windows, scene by scene."""
         return whitened_residuals(base, effects, self.scenes, self.whiteners)
+
+    def rows_of_each(self, models: Sequence[tuple[Base, Sequence[Added]]]) -> FloatArray:
+        """The same (C, R) of several models at once."""
+        made = np.empty((len(models), len(self.window_of_row)))
+        for begin in range(0, len(models), TOGETHER):
+            some = models[begin : begin + TOGETHER]
+            of_scenes = [
+                whitened(white, all_residuals_of_each(some, scene))
+                for white, scene in zip(self.whiteners, self.scenes, strict=True)
+            ]
+            made[begin : begin + TOGETHER] = np.concatenate(of_scenes).T
+        return made
 
     @cached_property
     def window_of_row(self) -> IntArray:

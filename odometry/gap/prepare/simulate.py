@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, components_last
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import (
     Added,
@@ -29,7 +29,7 @@ def simulated_poses(base: Base, effects: Sequence[Added], scene: DenseWindows) -
 
 
 def path_of(twists: FloatArray, scene: DenseWindows) -> FloatArray:
-    """Poses (N, 3) of the robot before each sample of a scene, driven by twists (N, 3)."""
+    """Poses (..., N, 3) of a robot before each sample of a scene, driven by twists (..., N, 3)."""
     return level_path(twists, scene.steps_s, scene.inputs)
 
 
@@ -66,6 +66,17 @@ def all_residuals(base: Base, effects: Sequence[Added], scene: DenseWindows) -> 
     """Residuals (K, R): of all poses of each window, then of the gyroscope if there is one."""
     twists = corrected_twist(base, effects, scene.inputs)
     return residuals_on(twists, path_of(twists, scene), base, effects, scene)
+
+
+def all_residuals_of_each(
+    models: Sequence[tuple[Base, Sequence[Added]]], scene: DenseWindows
+) -> FloatArray:
+    """The same (C, K, R) of several models: their paths are found at once."""
+    by_component = [corrected_twist(*model, scene.inputs).T for model in models]
+    twists = components_last(np.stack(by_component, axis=1))
+    paths = path_of(twists, scene)
+    each = zip(twists, paths, models, strict=True)
+    return np.stack([residuals_on(twist, path, *model, scene) for twist, path, model in each])
 
 
 def residuals_on(

@@ -73,3 +73,16 @@ def test_it_is_that_of_differences(uncertain, measured, effects):
     assert (expected[:, 1] == 0).all()
     size = np.abs(expected).max(axis=0)
     np.testing.assert_array_less(np.abs(found - expected).max(axis=0), 1e-3 * size + 1e-9)
+
+
+@pytest.mark.parametrize("effects", HYPOTHESES.values(), ids=HYPOTHESES)
+def test_rows_of_several_values_are_those_of_each(uncertain, measured, effects):
+    hypothesis = Hypothesis(uncertain, measured, effects)
+    inputs, base = measured.scenes[0].inputs, uncertain.base
+    started = [effect.starts(inputs, base)[0] for effect in effects]
+    start = np.concatenate([uncertain.uncertain.values, *started])
+    values = [start + share * hypothesis.scales for share in np.linspace(0.0, 0.4, 12)]
+    one_by_one = np.stack([hypothesis.rows(each) for each in values])
+    size = np.abs(one_by_one).max()
+    np.testing.assert_allclose(hypothesis.rows_of_each(values), one_by_one, atol=1e-9 * size)
+    np.testing.assert_allclose(hypothesis.costs(values), (one_by_one**2).sum(axis=1))
