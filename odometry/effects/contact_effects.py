@@ -11,10 +11,10 @@ from odometry.effects.held_commands import held_spans
 from odometry.effects.recorded import Recorded
 from odometry.effects.slope_icr import lacks_tilt
 from odometry.models.contact_balance import Balance, balance_at
-from odometry.models.contact_solve import solve_3x3
 from odometry.models.contact_stance import stance_of
 from odometry.models.inertia_model import G_M_S2
 from odometry.models.inputs import Inputs
+from odometry.models.three_equations import solve_3x3
 
 LATERAL_M_S2 = 0.3  # with less the contact model is not fitted
 STEP = 1e-5  # of a parameter, for a derivative

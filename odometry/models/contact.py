@@ -13,11 +13,12 @@ from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel, Linearised, Parameter
 from odometry.models.contact_balance import Balance, balance_at
-from odometry.models.contact_solve import balanced_near, balanced_twist, solve_3x3
+from odometry.models.contact_solve import balanced_near, balanced_twist
 from odometry.models.contact_stance import INSIDE, Stance, stance_of
 from odometry.models.icr_slope import GUESSED_HALF_LENGTH
 from odometry.models.inertia_model import G_M_S2
 from odometry.models.inputs import Inputs
+from odometry.models.three_equations import solve_3x3
 from odometry.run import Robot
 
 BLOCK = 4096  # samples at a time: what is known of their contacts fits the cache

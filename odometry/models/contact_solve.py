@@ -14,6 +14,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.models.contact_balance import Balance, balance_at
 from odometry.models.contact_stance import Stance
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.models.three_equations import dot, solve_3x3
 
 NEAR = 1e-9  # of the weight; nearer than this, rounding decides which way the forces push
 ITERATIONS, STAGE_ITERATIONS, LAST_ITERATIONS, NEAR_ITERATIONS = 20, 4, 60, 8
@@ -85,19 +86,6 @@ def descend(
     return best, least
 
 
-def solve_3x3(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solutions (3, ..., N) of matrix (3, 3, N) times solution = right (3, ..., N).
-
-    By Cramer's rule; zero where the matrix is singular.
-    """
-    first, second, third = np.moveaxis(matrix, 1, 0)
-    normals = [_cross(second, third), _cross(third, first), _cross(first, second)]
-    determinant = _dot(first, normals[0])
-    numerators: FloatArray = np.array([_dot(right, normal) for normal in normals])
-    solution = np.zeros_like(numerators)
-    return np.divide(numerators, determinant, out=solution, where=determinant != 0)
-
-
 def _start(stance: Stance) -> FloatArray:
     left, right = stance.tread_speeds_m_s
     omega = (right - left) / (2 * GUESSED_WIDTHS * stance.base_m[1])
@@ -117,7 +105,7 @@ def _led_by_slip_scale(stance: Stance) -> FloatArray:
 
 
 def _is_good(force: FloatArray, tried: Balance, step: FloatArray) -> BoolArray:
-    ahead, back = _dot(force, step), -_dot(tried.residual, step)
+    ahead, back = dot(force, step), -dot(tried.residual, step)
     return np.asarray((ahead >= 0) & (back <= PUSH_BACK * ahead))
 
 
@@ -142,14 +130,3 @@ def _size(stance: Stance, force: FloatArray) -> FloatArray:
     """Size (N,) of a wrench, the moment by the half diagonal of the base."""
     moment = force[2] / np.hypot(*stance.base_m)
     return np.asarray(np.sqrt(force[0] ** 2 + force[1] ** 2 + moment**2))
-
-
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.array(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
-
-
-def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Of vectors (3, ..., N) and (3, N)."""
-    return np.asarray(sum(part * other for part, other in zip(a, b, strict=True)))

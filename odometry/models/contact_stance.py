@@ -11,6 +11,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.models.inputs import Inputs
+from odometry.models.three_equations import solve_3x3
 
 MOST_CHANGES = 50  # of which contacts press; six were enough for ten contacts a side
 
@@ -79,10 +80,9 @@ def _shares_with_lift(
     """Lift what pulls, lower what has been lifted onto the plane's wrong side, until it stays."""
     load = np.stack([np.ones_like(centre[0]), *centre])
     for _ in range(MOST_CHANGES):
-        bearing = places * pressed
-        moments = np.einsum("icn,jcn->nij", bearing, bearing)
-        weights = np.einsum("nij,jcn->icn", np.linalg.inv(moments), places)
-        plane = np.einsum("icn,in->cn", weights, load)
+        moments = ((places * pressed)[:, None] * places).sum(axis=2)
+        weights = solve_3x3(moments, places)
+        plane = (weights * load[:, None]).sum(axis=0)
         presses = plane > 0
         if np.array_equal(presses, pressed):
             break
