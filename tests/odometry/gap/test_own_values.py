@@ -6,11 +6,13 @@ import pytest
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual, ResidualOfEachRun
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.course import _losses as run_losses
 from odometry.gap.fit.course import best_course
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.fit.own_values import by_turns, damped
 from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.responses import columns_of, simulated_scenes
 from odometry.gap.prepare.statistic import gap_of
 from odometry.windows.averaged import averaged_windows
 
@@ -79,6 +81,19 @@ def test_by_turns_each_is_judged_by_the_others(rng):
     for spread, found in zip((0.5, 0.1), by_turns(jacobian, rows, (0.5, 0.1), turn), strict=True):
         values = damped(jacobian[turn == 1], rows[turn == 1], spread)
         np.testing.assert_allclose(found[turn == 0], (rows + jacobian @ values)[turn == 0])
+
+
+def test_runs_by_themselves_cost_what_they_cost_together(pushed, known):
+    """Coefficients of one run do nothing to the rows of the other."""
+    measured = measured_of(pushed, known, CONFIG)
+    terms, knots = (("v_x", 0), ("v_x", 1), ("omega", 2)), (0.0, 40.0, 80.0)
+    effects = [ResidualOfEachRun("time", terms, "", knots, runs=2, spread=s) for s in (0.1, 0.02)]
+    simulated = simulated_scenes(known.base, (), measured.scenes)
+    rows = measured.rows(known.base, ())
+    jacobian = columns_of(effects[0], simulated, measured.whiteners)
+    together = by_turns(jacobian, rows, (0.1, 0.02), measured.window_of_row % 2)
+    losses = [loss for loss, _ in run_losses(measured, simulated, effects, rows)]
+    np.testing.assert_allclose(losses, (together**2).sum(axis=1))
 
 
 def test_a_plain_smooth_function_is_judged_as_it_is(pushed, known):
