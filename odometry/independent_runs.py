@@ -18,24 +18,30 @@ FACTORS = np.random.default_rng(0).integers(1, 2**63, 512, dtype=np.uint64) * 2 
 def check_no_run_twice(runs: Sequence[Run]) -> None:
     """Raise RunFolderError if a recording is there twice, whole or in part.
 
-    The same folder; copies: the same measured values row by row, whatever their stamps; or runs
-    that overlap: `ROWS` rows one after the other of which `CHANGES` differ are the same in all
-    that both measured. Tread speeds alone may be commands, and those may be given twice.
+    The same folder, but for parts one after the other; copies: the same measured values row by
+    row, whatever their stamps; runs that overlap: `ROWS` rows one after the other, of which
+    `CHANGES` differ, are the same in all that both measured. Tread speeds alone may be commands,
+    and those may be given twice.
     """
-    folders = [run.folder.resolve() for run in runs]
-    for folder in folders:
-        if folders.count(folder) > 1:
-            raise RunFolderError(
-                f"{folder} is given twice; expected each run once: none can be its own test"
-            )
     for number, run in enumerate(runs):
         for other in runs[:number]:
+            if run.folder.resolve() == other.folder.resolve() and _at_the_same_time(run, other):
+                raise RunFolderError(
+                    f"{run.folder.resolve()} is given twice; expected each run once: none can be "
+                    "its own test"
+                )
             shared = _shared(run, other)
             if shared:
                 raise RunFolderError(
                     f"{other.folder} and {run.folder} hold {shared}; expected each run once: none "
                     "can be its own test"
                 )
+
+
+def _at_the_same_time(run: Run, other: Run) -> bool:
+    """Whether two parts of a recording overlap; one that ends where the other begins does not."""
+    spans = [one.odometry.stamps_s[[0, -1]].tolist() for one in (run, other)]
+    return bool(max(first_s for first_s, _ in spans) < min(last_s for _, last_s in spans))
 
 
 def _shared(run: Run, other: Run) -> str:
@@ -58,8 +64,17 @@ def _measured_by_both(run: Run, other: Run) -> list[tuple[Table, Table]]:
     for one, another in ((run.pose, other.pose), (run.imu, other.imu)):
         if one is not None and another is not None:
             pairs.append((one, another))
-    measured = len(pairs) > 1 or len(run.odometry.columns) > len(("t", "v_left", "v_right"))
-    return pairs if measured else []
+    measured = [name for name in _numbers(*pairs[0]) if name not in ("v_left", "v_right")]
+    return pairs if measured or len(pairs) > 1 else []
+
+
+def _numbers(one: Table, other: Table) -> list[str]:
+    """Columns of numbers that both have, without the stamps."""
+    return sorted(
+        name
+        for name in one.columns.keys() & other.columns.keys()
+        if name != "t" and one[name].dtype.kind == other[name].dtype.kind == "f"
+    )
 
 
 def _are_equal(one: Table, other: Table) -> bool:
@@ -73,11 +88,7 @@ def _are_equal(one: Table, other: Table) -> bool:
 
 
 def _overlap(one: Table, other: Table) -> bool:
-    names = sorted(
-        name
-        for name in one.columns.keys() & other.columns.keys()
-        if name != "t" and one[name].dtype.kind == other[name].dtype.kind == "f"
-    )
+    names = _numbers(one, other)
     return bool(names) and bool(
         np.isin(_sequences(one.stack(*names)), _sequences(other.stack(*names))).any()
     )
