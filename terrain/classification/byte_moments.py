@@ -5,13 +5,16 @@ An exact sum does not depend on how many threads add it up, nor on the order of 
 
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
+from terrain.texture.borders import kept
 from terrain.texture.box_counting import count_bytes
 
-EXACT = 256  # pixels: the sum of so many products of two bytes is below 2^24, exact in float32
-BAND = 256 * EXACT  # pixels that are looked at together, at the most
+MIDDLE = 128  # grey: a byte less it is at most as large
+EXACT = 768  # pixels: the sum of so many products of two such is below 2^24, exact in float32
+BAND = 85 * EXACT  # pixels that are looked at together, at the most
 POWERS = np.arange(256.0)[:, None] ** (1, 2, 3)
 
 
@@ -30,19 +33,29 @@ def byte_moments(images: Sequence[ByteImage]) -> tuple[FloatArray, FloatArray]:
     covariance : (k, k) array
         In greys squared; divided by the number of pixels.
     """
-    flat = [image.ravel() for image in images]
-    pixels = flat[0].size
-    sums = np.zeros((len(flat) + 1, len(flat) + 1))
+    flat = np.stack(images).reshape(len(images), -1)
+    pixels = flat.shape[1]
+    sums, products = np.zeros(len(flat)), np.zeros((len(flat), len(flat)))
     for first in range(0, pixels, BAND):
-        of_band = min(BAND, pixels - first)
-        table = np.zeros((len(flat) + 1, -(-of_band // EXACT) * EXACT), np.float32)
-        for row, image in zip(table, flat, strict=False):
-            row[:of_band] = image[first : first + BAND]
-        table[-1, :of_band] = 1  # products with it are the sums of the images themselves
-        of_blocks = table.reshape(len(table), -1, EXACT).swapaxes(0, 1)
-        sums += (of_blocks @ of_blocks.swapaxes(1, 2)).sum(axis=0, dtype=np.float64)
-    means = sums[-1, :-1] / pixels
-    return means, sums[:-1, :-1] / pixels - np.outer(means, means)
+        band = flat[:, first : first + BAND]
+        sums += cv2.reduce(band, 1, cv2.REDUCE_SUM, dtype=cv2.CV_32S)[:, 0]
+        products += _products(band)
+    # (a - m)(b - m) = a b - m a - m b + m^2, in whole numbers: exact
+    products += MIDDLE * (sums[:, None] + sums - MIDDLE * pixels)
+    means = sums / pixels
+    return means, products / pixels - np.outer(means, means)
+
+
+def _products(band: ByteImage) -> FloatArray:
+    """Sums (k, k) of products of bytes (k, n), each less the MIDDLE."""
+    images, pixels = band.shape
+    padded = -(-pixels // EXACT) * EXACT
+    table = kept("moments", (padded, 4 * images)).view(np.float32)
+    by_pixel: ByteImage = np.asarray(cv2.transpose(band), np.uint8)
+    table[:pixels] = (by_pixel ^ np.uint8(MIDDLE)).view(np.int8)
+    table[pixels:] = 0
+    blocks = table.reshape(-1, EXACT, images)  # pixel by pixel: products take less time
+    return np.asarray((blocks.swapaxes(1, 2) @ blocks).sum(axis=0, dtype=np.float64))
 
 
 def third_moments(images: Sequence[ByteImage]) -> FloatArray:

@@ -4,11 +4,11 @@ from odometry.arrays import ByteImage
 from terrain.classification.filters import (
     ColourFilter,
     Filter,
-    Scales,
     band_pass,
     coherence,
     gradient_magnitude,
     gradient_orientation,
+    latest_scales,
     local_contrast,
     red_green,
     reduced,
@@ -59,7 +59,7 @@ class Copies(dict[str, ByteImage]):
     def __init__(self, image: ByteImage) -> None:
         super().__init__()
         self.image = image
-        self.scales = Scales(to_grey(image))
+        self.scales = latest_scales(to_grey(image))
 
     def __missing__(self, name: str) -> ByteImage:
         of_grey = GREY_COPIES.get(name)

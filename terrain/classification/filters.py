@@ -6,6 +6,7 @@ where it is not.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -16,6 +17,7 @@ from terrain.classification.orientation import half_turn_bytes
 WIDE_PX = 10.0  # sigma
 LEAST_REDUCED_PX = 32  # of the shorter side
 QUARTER = 4
+KEPT, MOST_KEPT_PX = 8, 2**16  # patches, and pixels of one
 # variance of the mean over a square of pixels, and of linear interpolation between such means
 SPREAD_OF_REDUCING_PX2 = (QUARTER**2 - 1) / 12 + QUARTER**2 / 6
 
@@ -48,6 +50,21 @@ class Scales:
             down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=0.125)
             self._gradients[sigma_px] = np.asarray(across), np.asarray(down)
         return self._gradients[sigma_px]
+
+
+def latest_scales(grey: ByteImage) -> Scales:
+    """`Scales` of a patch; those of the latest small ones are kept.
+
+    A run asks twice for those of an image's patches: for their features, and for their look.
+    """
+    if grey.size > MOST_KEPT_PX:
+        return Scales(grey)
+    return _latest_scales(grey.tobytes(), grey.shape)
+
+
+@lru_cache(maxsize=KEPT)
+def _latest_scales(content: bytes, shape: tuple[int, ...]) -> Scales:
+    return Scales(np.frombuffer(content, np.uint8).reshape(shape))
 
 
 Filter = Callable[[Scales], ByteImage]

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
-from terrain.classification.filters import Scales
+from terrain.classification.filters import latest_scales
 from terrain.classification.patches import cut_patches
 from terrain.images import to_grey
 
@@ -31,7 +31,7 @@ def look_of(patch: ByteImage) -> FloatArray:
 @lru_cache(maxsize=KEPT)
 def _look(content: bytes, shape: tuple[int, ...]) -> FloatArray:
     patch = np.frombuffer(content, dtype=np.uint8).reshape(shape)
-    scales = Scales(to_grey(patch))
+    scales = latest_scales(to_grey(patch))
     levels = [scales.grey, *(scales.blurred(sigma) for sigma in SIGMAS_PX)]
     spreads = [cv2.meanStdDev(a - b)[1].item() for a, b in pairwise(levels)]
     octaves = np.log(np.square(spreads) + 0.05)

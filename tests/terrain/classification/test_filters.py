@@ -3,12 +3,14 @@ import numpy as np
 import pytest
 
 from terrain.classification.filters import (
+    MOST_KEPT_PX,
     Scales,
     band_pass,
     blur,
     coherence,
     gradient_magnitude,
     gradient_orientation,
+    latest_scales,
     local_contrast,
     red_green,
     reduced,
@@ -119,3 +121,14 @@ def test_a_blur_that_is_not_wide_and_one_of_a_small_patch_are_the_gaussian(shape
     grey = rng.uniform(0, 255, shape).astype(np.float32)
     expected = cv2.GaussianBlur(grey, (0, 0), sigma_px)
     np.testing.assert_array_equal(blur(grey, sigma_px), expected)
+
+
+def test_scales_of_a_patch_are_kept_for_the_same_patch_again_and_large_ones_are_not(rng):
+    grey, other = rng.integers(0, 256, (2, 96, 96), dtype=np.uint8)
+    kept = latest_scales(grey)
+    assert latest_scales(grey.copy()) is kept
+    assert latest_scales(other) is not kept
+    assert latest_scales(grey.reshape(48, 192)) is not kept
+    np.testing.assert_array_equal(kept.blurred(1.4), Scales(grey).blurred(1.4))
+    large = np.zeros((MOST_KEPT_PX // 64, 65), np.uint8)
+    assert latest_scales(large) is not latest_scales(large)
