@@ -78,6 +78,7 @@ def line_styles(names: Iterable[str]) -> dict[str, LineStyle]:
 
 
 _MARGIN_IN = 0.03  # white beside a text at an edge
+_COMPRESSION = 3  # of 9: files as small as by the usual 6, in less than half of the time
 _STYLE = {
     "font.size": 10.0,
     "axes.titlesize": 10.5,
@@ -122,8 +123,13 @@ def save_figure(
         FigureCanvasAgg(figure)
         draw(figure)
         with atomic_write(file) as part:
-            metadata = {"Software": None, "Source": source}
-            figure.savefig(part, dpi=dpi, metadata=metadata, bbox_inches=_whole(figure))
+            figure.savefig(
+                part,
+                dpi=dpi,
+                metadata={"Software": None, "Source": source},
+                bbox_inches=_whole(figure),
+                pil_kwargs={"compress_level": _COMPRESSION},
+            )
     return file
 
 
