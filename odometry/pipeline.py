@@ -1,5 +1,7 @@
 """The frame loop: a run, a filter and a source of terrain give estimates."""
 
+import math
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Protocol
@@ -181,10 +183,11 @@ def _from_start(run: Run) -> Iterator[Frame]:
 
     A held speed goes on in a gap, as the best that is known; the frames mark the gap.
     """
-    gap_begins_s, gap_ends_s = odometry_gaps(run).spans_s.T
+    begins_s, ends_s = odometry_gaps(run).spans_s.T.tolist()
     for frame in _usable(run):
-        in_gap = (gap_begins_s < frame.stamp_s) & (frame.stamp_s <= gap_ends_s)
-        yield replace(frame, in_gap=True) if in_gap.any() else frame
+        gap = bisect_left(ends_s, frame.stamp_s)  # the first that ends no earlier
+        in_gap = gap < len(ends_s) and begins_s[gap] < frame.stamp_s
+        yield replace(frame, in_gap=True) if in_gap else frame
 
 
 def _frames_so_far(run: Run) -> Iterator[Frame]:
@@ -201,5 +204,5 @@ def _usable(run: Run) -> Iterator[Frame]:
         is_on = is_on or can_start(frame, at_pose=has_pose)
         if is_on:
             yield frame
-            if not np.isfinite(frame.tread_speeds_m_s).all():
+            if not math.isfinite(sum(frame.tread_speeds_m_s.tolist())):
                 return

@@ -1,5 +1,6 @@
 """Terrain of a run: under its robot, by row, and by stamp as the source of a replay."""
 
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -9,6 +10,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.estimation.estimate import Estimate
+from odometry.estimation.kept_estimates import KeptEstimates
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 
@@ -111,23 +113,24 @@ class ReplayedFooting:
         return self.estimates[0].terrain
 
     @cached_property
-    def _footings(self) -> tuple[FloatArray, list[Footing]]:
-        """Stamps (n,) from which on the footing was another one, and that footing."""
-        stamps_s, footings, before = [], [], None
-        for estimate in self.estimates:
-            now = estimate.terrain, estimate.crossing
-            if before is None or now[0] != before[0] or now[1] is not before[1]:
-                shares = None if now[1] is None else now[1].shares
-                footings.append(Footing.of(now[0]) if shares is None else Footing(now[0], shares))
-                stamps_s.append(estimate.stamp_s)
-            before = now
-        return np.array(stamps_s), footings
+    def _footings(self) -> tuple[list[float], list[Footing]]:
+        """Stamps (n,) from which on the footing may be another one, and that footing."""
+        kept = self.estimates
+        if not isinstance(kept, KeptEstimates):
+            kept = KeptEstimates(kept)
+        stamps_s, footings = list[float](), list[Footing]()
+        stretches = zip(kept.lasting("terrain"), kept.lasting("crossing"), strict=True)
+        for (rows, terrain), (_, crossing) in stretches:
+            first = slice(rows.start, rows.start + 1)
+            stamps_s += kept.numbers("stamp_s", first).tolist()
+            shares = None if crossing is None else crossing.shares
+            footings.append(Footing.of(terrain) if shares is None else Footing(terrain, shares))
+        return stamps_s, footings
 
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:  # noqa: ARG002 - the protocol's
         """The footing in force at the stamp of the frame."""
         stamps_s, footings = self._footings
-        row = int(np.searchsorted(stamps_s, frame.stamp_s, side="right")) - 1
-        return footings[max(row, 0)]
+        return footings[max(bisect_right(stamps_s, frame.stamp_s) - 1, 0)]
 
 
 def labelled_terrain(run: Run, initial: str | None = None) -> NamedTerrain:

@@ -106,12 +106,15 @@ def changed_bias(watch: BiasWatch, estimated_rad_s: float) -> tuple[float, float
     for count in RUNS:
         if count > watch.since or len(biases) < LEAST_RUNS * count:
             return None
+        least = LEAST_RAD / (count * SPAN_S)
+        halves = biases[-count:].reshape(2, -1).mean(axis=1) - estimated_rad_s
+        if np.abs(halves).min() <= least / 2:
+            continue  # as a rule; the median takes longer
         means = (sums[count:] - sums[:-count]) / count
         apart = np.abs(means[count:] - means[:-count])
         sigma = 1.4826 * float(np.median(apart)) * math.sqrt(1 / 2)
         bias = float(means[-1])
-        least = max(SIGMAS * sigma, LEAST_RAD / (count * SPAN_S))
-        halves = biases[-count:].reshape(2, -1).mean(axis=1) - estimated_rad_s
+        least = max(SIGMAS * sigma, least)
         sure = abs(halves.sum()) > 2 * least and np.abs(halves).min() > least / 2
         if sure and halves.prod() > 0 and treads_agree(watch, count, bias, estimated_rad_s):
             return bias, sigma

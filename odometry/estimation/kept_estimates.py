@@ -57,7 +57,7 @@ class KeptEstimates(Sequence[Estimate]):
     def __init__(self, estimates: Iterable[Estimate] = ()) -> None:
         self._file = TemporaryFile()  # noqa: SIM115 - open as long as the sequence
         weakref.finalize(self, self._file.close)
-        self._unwritten = np.empty((WIDTH, BLOCK))
+        self._unwritten = np.empty((BLOCK, WIDTH))
         self._count = 0
         self._lasting: list[tuple[int, _Lasting]] = []
         self._last: Estimate | None = None
@@ -66,13 +66,13 @@ class KeptEstimates(Sequence[Estimate]):
 
     def append(self, estimate: Estimate) -> None:
         """Add the next estimate."""
-        self._unwritten[:, self._count % BLOCK] = _row(estimate)
+        _write(self._unwritten[self._count % BLOCK], estimate)
         self._last = estimate
         self._note(estimate, self._count)
         self._count += 1
         if self._count % BLOCK == 0:
             with naming_temporary():
-                self._file.write(self._unwritten.tobytes())
+                self._file.write(self._unwritten.T.tobytes())
 
     def end_with(self, last: Estimate) -> None:
         """Put an estimate with other events in place of the last."""
@@ -131,7 +131,13 @@ class KeptEstimates(Sequence[Estimate]):
         return KeptEstimates, (list(self),)
 
     def _note(self, estimate: Estimate, place: int) -> None:
-        lasting = _Lasting(*(getattr(estimate, name) for name in _Lasting._fields))
+        lasting = _Lasting(
+            estimate.terrain,
+            estimate.learned,
+            estimate.crossing,
+            estimate.course,
+            estimate.events,
+        )
         if self._lasting and self._lasting[-1][0] == place:
             self._lasting.pop()
         if not self._lasting or not _alike(self._lasting[-1][1], lasting):
@@ -140,7 +146,7 @@ class KeptEstimates(Sequence[Estimate]):
     def _read(self, start: int, numbers: slice) -> FloatArray:
         """Some numbers (size, BLOCK) of the block that starts at an estimate."""
         if start + BLOCK > self._count:
-            return self._unwritten[numbers]
+            return self._unwritten.T[numbers]
         size = numbers.stop - numbers.start
         self._file.seek((start * WIDTH + numbers.start * BLOCK) * 8)
         found = np.frombuffer(self._file.read(size * BLOCK * 8)).reshape(size, BLOCK)
@@ -159,8 +165,8 @@ def _alike(one: _Lasting, other: _Lasting) -> bool:
     )
 
 
-def _row(estimate: Estimate) -> FloatArray:
-    row = np.full(WIDTH, np.nan)
+def _write(row: FloatArray, estimate: Estimate) -> None:
+    row.fill(np.nan)
     for name in ("mean", "tread_speeds_m_s", "added_speeds_m_s", "added_twist"):
         row[PLACES[name]] = getattr(estimate, name)
     for name in ("stamp_s", "yaw_rate_rad_s", "believed_yaw_rate_rad_s", "jumped"):
@@ -173,7 +179,6 @@ def _row(estimate: Estimate) -> FloatArray:
         row[PLACES["measured"]] = len(residual)
         row[first : first + len(residual)] = residual
         row[PLACES["normalised_squared"]], row[PLACES["accepted"]] = squared, accepted
-    return row
 
 
 def _estimate(row: FloatArray, lasting: _Lasting) -> Estimate:

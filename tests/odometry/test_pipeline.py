@@ -173,3 +173,29 @@ def test_what_a_replay_holds(make_run):
     assert result.means.shape == result.sigmas.shape == (17, 9)
     np.testing.assert_allclose(result.sigmas[5], np.sqrt(np.diag(result.estimates[5].covariance)))
     assert result.jumps.tolist() == [False] * 17
+
+
+class Remembering(IcrEkf):
+    """A filter that remembers the stamps of its frames, and of those in gaps."""
+
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.stamps_s, self.in_gaps_s = [], []
+
+    def step(self, estimate, frame, terrain):
+        self.stamps_s.append(frame.stamp_s)
+        if frame.in_gap:
+            self.in_gaps_s.append(frame.stamp_s)
+        return super().step(estimate, frame, terrain)
+
+
+def test_frames_within_gaps_and_at_their_ends_are_marked(make_run):
+    """Poses contradict the held speed of one gap; nothing confirms that of the other."""
+    stamps_s = [*np.arange(0, 4, 0.25), *np.arange(9, 12, 0.25), *np.arange(17, 20, 0.25)]
+    rows = "".join(f"{t},0.5,0.5\n" for t in stamps_s)
+    pose = "t,x,y,yaw\n0.0,0.0,0.0,0.0\n3.75,1.875,0.0,0.0\n5.0,1.9,0.0,0.0\n9.0,1.9,0.0,0.0\n"
+    run = Run.read(make_run(odometry="t,v_left,v_right\n" + rows, pose=pose))
+    ekf = Remembering(0.6, PARAMETERS)
+    replay(run, ekf, ConstantTerrain("a"))
+    assert ekf.in_gaps_s == [5.0, 9.0, 17.0]
+    assert {3.75, 9.25, 11.75} < set(ekf.stamps_s)
