@@ -121,4 +121,5 @@ def _check_not_back(stamps_s: AnyArray, file: Path, lines: AnyArray) -> None:
 def _format(column: AnyArray, decimals: int) -> list[str]:
     if column.dtype.kind != "f":
         return [quoted_text(str(value)) for value in column]
-    return ["" if math.isnan(value) else f"{value:.{decimals}f}" for value in column]
+    pattern = f"%.{decimals}f"
+    return ["" if math.isnan(value) else pattern % value for value in column.tolist()]

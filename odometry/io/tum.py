@@ -62,8 +62,9 @@ def write_spatial_tum(file: str | Path, trajectory: SpatialTrajectory) -> None:
 def _write(file: str | Path, parts: Iterable[SpatialTrajectory]) -> None:
     with atomic_write(Path(file)) as part, part.open("w", encoding="ascii") as stream:
         for of in parts:
-            columns = zip(of.stamps_s, of.positions_m, of.quaternions_wxyz, strict=True)
-            for stamp_s, (x, y, z), (qw, qx, qy, qz) in columns:
+            columns = of.stamps_s, of.positions_m, of.quaternions_wxyz
+            rows = zip(*(column.tolist() for column in columns), strict=True)
+            for stamp_s, (x, y, z), (qw, qx, qy, qz) in rows:
                 stream.write(
                     f"{stamp_s:.9f} {x:.12f} {y:.12f} {z:.12f} "
                     f"{qx:.15f} {qy:.15f} {qz:.15f} {qw:.15f}\n"
