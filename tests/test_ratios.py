@@ -1,5 +1,9 @@
 """The table of ratios of the benchmarks, and its comparison with a release, from times made up."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from tests.benchmarks.ratios import RATIOS, Row, ratio_table
@@ -19,6 +23,15 @@ def test_what_was_not_measured_has_no_row():
     assert ratio_table({}, {"test_identification_against_a_loop": 7.25}) == [
         Row("identification, 1 h at 20 Hz", 7.25, "times faster than a plain loop", "at least 50")
     ]
+
+
+def test_every_row_is_of_benchmarks_that_there_are():
+    folder = Path(__file__).parent / "benchmarks"
+    command = [sys.executable, "-m", "pytest", "-n", "0", "--collect-only", "-q", str(folder)]
+    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    names = {line.rpartition("::")[2] for line in listed.splitlines()}
+    assert {ratio.of for ratio in RATIOS} <= names
+    assert {ratio.to for ratio in RATIOS if not ratio.is_figure} <= names
 
 
 def test_every_row_has_a_name_of_its_own():

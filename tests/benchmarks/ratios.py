@@ -41,7 +41,7 @@ class Row:
 SIZES = {"200 x 200": 20, "640 x 480": 7, "1280 x 720": 6}
 RATIOS = (
     *(
-        Ratio(f"SFTA of {size}", f"test_sfta[size{i}-chen2023]", f"test_calc_hist[size{i}]", aim)
+        Ratio(f"SFTA of {size}", f"test_sfta[chen2023-size{i}]", f"test_calc_hist[size{i}]", aim)
         for i, (size, aim) in enumerate(SIZES.items())
     ),
     Ratio("run with vision", "test_run[default]", "test_decoding", 15),
