@@ -137,7 +137,11 @@ def _share(followed: Followed, rows: BoolArray) -> float:
 
 def _when(followed: Followed, rows: BoolArray) -> str:
     begin_s, end_s = followed.last_track.stamps_s[np.flatnonzero(rows)[[0, -1]]]
-    return f"between {begin_s:.1f} s and {end_s:.1f} s"
+    between = f"between {begin_s:.1f} s and {end_s:.1f} s"
+    if (np.diff(rows.astype(int)) == 1).sum() + rows[0] == 1:
+        return between
+    lasts_s = np.append(np.diff(followed.last_track.stamps_s), 0.0)
+    return f"for {float(lasts_s @ rows):.1f} s in all {between}"
 
 
 def not_checked(followed: Followed) -> tuple[str, ...]:
@@ -148,7 +152,10 @@ def not_checked(followed: Followed) -> tuple[str, ...]:
     modes, signals = followed.mode_set.modes, followed.signals
     if not isinstance(modes, VelocityModes):
         return ()
-    found = []
+    found = [
+        "terrains that the set does not hold: one on which the robot moves as on a mode of the set "
+        "gets the name of that mode"
+    ]
     if signals.heading_check is None:
         found.append(
             "the scale of the gyroscope, without measured headings: one that is off turns as "

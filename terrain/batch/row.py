@@ -52,6 +52,8 @@ class Row:
         Names of what misleads: warnings of the check, events of the filter.
     notes : tuple of str
         The same in sentences, and remarks on the errors.
+    sha256 : str
+        Of the run; copies have the same.
     """
 
     name: str
@@ -63,6 +65,7 @@ class Row:
     robot: tuple[str, float] = ("", 0.0)
     flags: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    sha256: str = ""
 
 
 def row_of(outcome: Outcome) -> Row:
@@ -79,9 +82,11 @@ def row_of(outcome: Outcome) -> Row:
         return Row(job.name, folder, outcome.said)
     file = job.out / "result.json"
     try:
-        return _row(job.name, folder, read_json(file, ResultError))
+        row = _row(job.name, folder, read_json(file, ResultError))
     except (KeyError, TypeError) as error:
         raise ResultError(f"{file}: it is not a result of `run`") from error
+    sums = {role: sha256 for role, _, sha256 in outcome.sums}
+    return replace(row, sha256=sums.get("RUN", ""))
 
 
 def _row(name: str, folder: str, result: Mapping[str, Any]) -> Row:
@@ -175,10 +180,11 @@ def merge(out: Path, rows: Sequence[Row], before: ParameterSet) -> Learned:
         named = ", ".join(f"{name or 'a robot'} {width:g} m wide" for name, width in robots)
         said = f"Nothing is merged, the runs are of several robots: {named}"
         return Learned(before, {}, (said, _absent("none was merged")))
+    copies = _copies(done)
     after = {
         row.name: read_parameters(out / row.name / LEARNED)
         for row in done
-        if not row.flags and (out / row.name / LEARNED).is_file()
+        if not row.flags and row.name not in copies and (out / row.name / LEARNED).is_file()
     }
     terrains = {
         name: merged_terrain(tables, began_alike=name in before.terrains)
@@ -187,11 +193,25 @@ def merge(out: Path, rows: Sequence[Row], before: ParameterSet) -> Learned:
     misled = [f"{row.name} ({' '.join(row.flags)})" for row in done if row.flags]
     said = f"Not merged, because something misled the filter: {', '.join(misled)}"
     left_out = [said] if misled else []
+    if copies:
+        same = ", ".join(f"{name} (of {first})" for name, first in copies.items())
+        left_out.append(f"Not merged, because it is a copy of another run: {same}")
     if not terrains:
         others = "of the others changed" if misled and len(misled) < len(done) else "changed"
         why = f"no run {others} the parameters of a terrain" if done else "no run was finished"
         left_out.append(_absent("none was merged" if len(misled) == len(done) > 0 else why))
     return Learned(before, terrains, tuple(left_out))
+
+
+def _copies(rows: Sequence[Row]) -> dict[str, str]:
+    """Names of runs that are copies of an earlier one, byte by byte, and the names of those."""
+    first: dict[str, str] = {}
+    for row in rows:
+        if row.sha256:
+            first.setdefault(row.sha256, row.name)
+    return {
+        row.name: first[row.sha256] for row in rows if row.sha256 and first[row.sha256] != row.name
+    }
 
 
 def _absent(why: str) -> str:

@@ -82,3 +82,13 @@ def test_without_doubts_none_is_said():
     found = followed_with()
     assert doubts(found) == ()
     assert content_of(found)["not_named"] == []
+
+
+def test_what_is_off_in_parts_says_for_how_long_in_all():
+    def reason(*rows):
+        disagree = np.isin(np.arange(SIZE), rows)
+        (one,) = doubts(followed_with(headings_disagree=disagree))
+        return one.reason
+
+    assert "between 1.5 s and 2.5 s" in reason(3, 4, 5)
+    assert "for 1.5 s in all between 0.5 s and 3.0 s" in reason(1, 2, 6)

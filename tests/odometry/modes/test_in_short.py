@@ -61,7 +61,9 @@ def test_where_a_probable_mode_does_not_fit_well_it_is_said_why_it_is_not_named(
 def test_where_modes_are_alike_none_is_doubtful():
     answers = by_hand(["a", "", "", ""])
     assert answers.doubtful(answers.motion) == 0.0
-    assert "fits all along. Not checked: the scale of " in in_short(answers)[1]
+    assert (
+        "fits all along. Not checked: terrains that the set does not hold: " in in_short(answers)[1]
+    )
 
 
 @pytest.mark.parametrize(("sigmas", "begins"), [(2.5, "look at the innovations"), (3.5, "check ")])

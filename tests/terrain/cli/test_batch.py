@@ -26,6 +26,8 @@ def here(tmp_path, world, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in NAMES:
         world.drive_curves(tmp_path / name, truth=name == "b")
+    shorter = (tmp_path / "c" / "odometry.csv").read_text().splitlines()[:-1]
+    (tmp_path / "c" / "odometry.csv").write_text("\n".join(shorter) + "\n")  # no copy of a
     (tmp_path / "bad").mkdir()
     (tmp_path / "bad" / "run.toml").write_text("[robot]\n")
     return tmp_path

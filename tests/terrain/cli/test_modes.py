@@ -135,7 +135,7 @@ def test_what_no_pose_can_check_is_said(make, models, tmp_path):
     assert "Not checked: the scale of the gyroscope" not in with_poses.stdout
     assert "Not checked: the scale of the gyroscope, without measured headings" in without.stdout
     assert "Not checked: the distance, without measured positions" in without.stdout
-    assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 2
+    assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 3
 
 
 def test_a_sight_that_lies_is_reported(with_sight):
