@@ -86,8 +86,9 @@ def test_without_doubts_none_is_said():
 
 def test_what_is_off_in_parts_says_for_how_long_in_all():
     def reason(*rows):
-        disagree = np.isin(np.arange(SIZE), rows)
-        (one,) = doubts(followed_with(headings_disagree=disagree))
+        scale = np.where(np.isin(np.arange(SIZE), rows), 1.21, np.nan)
+        trust = GyroscopeTrust(np.zeros(SIZE, dtype=bool), scale)
+        (one,) = doubts(followed_with(gyroscope=trust))
         return one.reason
 
     assert "between 1.5 s and 2.5 s" in reason(3, 4, 5)
