@@ -10,7 +10,6 @@ import click
 
 from terrain.cli.options import OUTPUT, processes_option, scheduler_option
 from terrain.cli.run import run_options
-from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from terrain.batch.batch import Batch
@@ -33,7 +32,9 @@ def _prepared(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @click.command()
-@run_folders
+@click.argument(
+    "folders", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
 @click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for the results.")
 @_prepared
 @run_options

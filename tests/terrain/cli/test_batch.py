@@ -66,15 +66,17 @@ def test_each_folder_is_byte_for_byte_what_run_makes(here):
 
 @pytest.mark.usefixtures("no_report")
 def test_a_failed_run_is_a_row_and_the_exit_code_says_so(here):
-    answer = call(batch, "a", "bad", "b", "absent", "--processes", "1")
+    (here / "notes.txt").write_text("a file that `*` brings along\n")
+    answer = call(batch, "a", "bad", "b", "absent", "notes.txt", "--processes", "1")
     assert answer.exit_code == 1
     table = rows(here / "out")
-    assert [row["run"] for row in table] == ["a", "bad", "b", "absent"]
-    assert [bool(row["error"]) for row in table] == [False, True, False, True]
+    assert [row["run"] for row in table] == ["a", "bad", "b", "absent", "notes.txt"]
+    assert [bool(row["error"]) for row in table] == [False, True, False, True, True]
+    assert "this is a file; expected a run folder" in table[4]["error"]
     assert "[robot] with track_width [m] is required" in table[1]["error"]
     assert f"bad: failed: {table[1]['error']}" in answer.output
-    assert "4 runs: 2 replayed in" in answer.output
-    assert "2 failed" in answer.output
+    assert "5 runs: 2 replayed in" in answer.output
+    assert "3 failed" in answer.output
     assert table[2]["reference"] == "truth"
     result = json.loads((here / "out" / "b" / "result.json").read_text())
     mean = result["errors"]["odometer"]["translation_m_per_m"]["mean"]
