@@ -79,8 +79,8 @@ def _more(followed: Followed) -> Iterator[str]:
             yield f"The answer{whose} turned to a wrong mode {times}."
     if followed.foreign_labels:
         yield (
-            f"The run names {', '.join(followed.foreign_labels)}, which is no mode: the answers "
-            "there were not scored."
+            f"The run names {', '.join(followed.foreign_labels)}, which is no mode of the set: a "
+            "mode that is named there is wrong, and the shares leave it out."
         )
     yield from camera_words(followed)
 
