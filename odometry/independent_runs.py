@@ -18,14 +18,15 @@ FACTORS = np.random.default_rng(0).integers(1, 2**63, 512, dtype=np.uint64) * 2 
 def check_no_run_twice(runs: Sequence[Run]) -> None:
     """Raise RunFolderError if a recording is there twice, whole or in part.
 
-    The same folder, but for parts one after the other; copies: the same measured values row by
+    The same folder, but for parts of it that do not overlap; copies: the same measured values row by
     row, whatever their stamps; runs that overlap: `ROWS` rows one after the other, of which
     `CHANGES` differ, are the same in all that both measured. Tread speeds alone may be commands,
     and those may be given twice.
     """
     for number, run in enumerate(runs):
         for other in runs[:number]:
-            if run.folder.resolve() == other.folder.resolve() and _at_the_same_time(run, other):
+            same_folder = run.folder.resolve() == other.folder.resolve()
+            if same_folder and _are_equal(run.odometry, other.odometry):
                 raise RunFolderError(
                     f"{run.folder.resolve()} is given twice; expected each run once: none can be "
                     "its own test"
@@ -36,12 +37,6 @@ def check_no_run_twice(runs: Sequence[Run]) -> None:
                     f"{other.folder} and {run.folder} hold {shared}; expected each run once: none "
                     "can be its own test"
                 )
-
-
-def _at_the_same_time(run: Run, other: Run) -> bool:
-    """Whether two parts of a recording overlap; one that ends where the other begins does not."""
-    spans = [one.odometry.stamps_s[[0, -1]].tolist() for one in (run, other)]
-    return bool(max(first_s for first_s, _ in spans) < min(last_s for _, last_s in spans))
 
 
 def _shared(run: Run, other: Run) -> str:
