@@ -18,20 +18,21 @@ FACTORS = np.random.default_rng(0).integers(1, 2**63, 512, dtype=np.uint64) * 2 
 def check_no_run_twice(runs: Sequence[Run]) -> None:
     """Raise RunFolderError if a recording is there twice, whole or in part.
 
-    The same folder, but for parts of it that do not overlap; copies: the same measured values row by
-    row, whatever their stamps; runs that overlap: `ROWS` rows one after the other, of which
+    The same folder, but for parts of it that do not overlap; copies: the same measured values row
+    by row, whatever their stamps; runs that overlap: `ROWS` rows one after the other, of which
     `CHANGES` differ, are the same in all that both measured. Tread speeds alone may be commands,
     and those may be given twice.
     """
+    alike = _with_alike_odometry(runs)
     for number, run in enumerate(runs):
-        for other in runs[:number]:
+        for place, other in enumerate(runs[:number]):
             same_folder = run.folder.resolve() == other.folder.resolve()
             if same_folder and _are_equal(run.odometry, other.odometry):
                 raise RunFolderError(
                     f"{run.folder.resolve()} is given twice; expected each run once: none can be "
                     "its own test"
                 )
-            shared = _shared(run, other)
+            shared = _shared(run, other, may_overlap=(place, number) in alike)
             if shared:
                 raise RunFolderError(
                     f"{other.folder} and {run.folder} hold {shared}; expected each run once: none "
@@ -39,7 +40,22 @@ def check_no_run_twice(runs: Sequence[Run]) -> None:
                 )
 
 
-def _shared(run: Run, other: Run) -> str:
+def _with_alike_odometry(runs: Sequence[Run]) -> set[tuple[int, int]]:
+    """Pairs of runs that have rows of odometry.csv one after the other in common."""
+    columns = [set(_numbers(run.odometry, run.odometry)) for run in runs]
+    names = sorted(set.intersection(*columns)) if columns else []
+    if not names:
+        return set()
+    sequences = [np.unique(_sequences(run.odometry.stack(*names))) for run in runs]
+    of_run = np.repeat(np.arange(len(runs)), [len(one) for one in sequences])
+    values = np.concatenate(sequences)
+    order = np.lexsort((of_run, values))
+    same = np.flatnonzero(values[order][1:] == values[order][:-1])
+    pairs = np.unique(np.stack([of_run[order[same]], of_run[order[same + 1]]], axis=1), axis=0)
+    return {(int(one), int(other)) for one, other in pairs}
+
+
+def _shared(run: Run, other: Run, *, may_overlap: bool) -> str:
     """What two runs of a robot have in common, in words; "" where they are independent."""
     if run.robot != other.robot:
         return ""
@@ -48,7 +64,7 @@ def _shared(run: Run, other: Run) -> str:
         return ""
     if all(_are_equal(one, another) for one, another in pairs):
         return "the same recording (all values but the stamps are equal)"
-    if all(_overlap(one, another) for one, another in pairs):
+    if may_overlap and all(_overlap(one, another) for one, another in pairs):
         return "parts of one recording that overlap (the same values row after row)"
     return ""
 
