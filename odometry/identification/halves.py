@@ -1,14 +1,13 @@
 """Fits on one part of the recordings, evaluated on the other: runs held out, and both halves."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 
 import numpy as np
-from scipy.stats import chi2
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import IntArray
 from odometry.errors import IdentificationError
 from odometry.identification.fit import Fit
+from odometry.identification.fit_pair import FitPair
 from odometry.identification.fitters import FitTo
 from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over
@@ -75,93 +74,19 @@ def held_out_errors(
     return WindowErrors(translation[held_out], rotation[held_out])
 
 
-BY_CHANCE = 1e-6  # probability below which halves differ
-WORSE = 1.2  # how much farther off each half must be under the parameters of the other
-NAMED_SIGMAS = 3.0  # of a difference that is named
-
-
-@dataclass(frozen=True)
-class Halves:
-    """Fits to the first and to the second half of every run.
-
-    Attributes
-    ----------
-    first, second : Fit
-    """
-
-    first: Fit
-    second: Fit
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Parameters that both halves determine."""
-        determined = [
-            {*fit.names} - fit.open_names - {*fit.at_bound} for fit in (self.first, self.second)
-        ]
-        return tuple(name for name in self.first.names if name in determined[0] & determined[1])
-
-    @property
-    def by_chance(self) -> float:
-        """Probability of a difference as large if the parameters were the same (Wald's test)."""
-        if not self.names:
-            return 1.0
-        squared = float(self._difference @ np.linalg.solve(self._covariance, self._difference))
-        return float(chi2.sf(squared, len(self.names)))
-
-    @property
-    def worse(self) -> float:
-        """How many times farther off a half is under the other's parameters: of the better half.
-
-        By the mean error of position or of yaw, whichever shows more.
-        """
-        shares = []
-        for own, other in ((self.first, self.second), (self.second, self.first)):
-            here, there = (errors_over(f.model, f.packed, own.windows) for f in (own, other))
-            shares.append(
-                max(
-                    float(theirs.mean() / max(ours.mean(), np.finfo(float).tiny))
-                    for ours, theirs in (
-                        (here.translation_per_m, there.translation_per_m),
-                        (here.rotation_per_m, there.rotation_per_m),
-                    )
-                )
-            )
-        return min(shares)
+class Halves(FitPair):
+    """Fits to the first and to the second half of every run."""
 
     def note(self) -> str | None:
-        """A sentence where the halves give different parameters, and what to do.
-
-        The probability was chosen on the 19 recordings of data/motion that are not among the
-        seven on which the odometer is evaluated: it is 5e-6 and more on each.
-        """
-        if self.by_chance >= BY_CHANCE or self.worse < WORSE:
+        """A sentence where the halves give different parameters, and what to do."""
+        if not self.differs:
             return None
-        sigmas = np.sqrt(np.diag(self._covariance))
-        clear = np.abs(self._difference) / sigmas
-        named = [
-            f"{name} {self.first.values[name]:.3g} and {self.second.values[name]:.3g}"
-            for name, size in zip(self.names, clear.tolist(), strict=True)
-            if size > min(NAMED_SIGMAS, clear.max() * 0.999)
-        ]
         return (
             "the first and the second half of the runs give different parameters "
-            f"({', '.join(named)}); with those of the other, the error of each half is "
+            f"({self.values_named}); with those of the other, the error of each half is "
             f"{self.worse:.1f} times as large: the values are an average of both. Identify parts "
             "alone (--from, --to), or name the terrain of each row (column terrain of odometry.csv)"
         )
-
-    @property
-    def _difference(self) -> FloatArray:
-        return np.array([self.second.values[n] - self.first.values[n] for n in self.names])
-
-    @property
-    def _covariance(self) -> FloatArray:
-        return _of(self.first, self.names) + _of(self.second, self.names)
-
-
-def _of(fit: Fit, names: Iterable[str]) -> FloatArray:
-    rows = [fit.names.index(name) for name in names]
-    return fit.normal_covariance[np.ix_(rows, rows)]
 
 
 def halves_of(

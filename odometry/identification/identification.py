@@ -11,7 +11,9 @@ from odometry.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.halves import Halves
 from odometry.identification.plausibility import CAUSES, refusals
+from odometry.identification.runs_apart import RunsApart
 from odometry.identification.stretch_fit import FEWEST
+from odometry.identification.two_kinds import TwoKinds
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
@@ -37,6 +39,10 @@ class Identified:
         Parameters that were held at a stated value.
     halves : Halves or None
         Fits to either half of every run; None where one cannot be fitted.
+    apart : RunsApart or None
+        Runs that do not fit one model; None where all agree.
+    kinds : TwoKinds or None
+        Windows that two sets explain far better than one.
     """
 
     fit: Fit
@@ -45,6 +51,14 @@ class Identified:
     ideal: WindowErrors
     given: Mapping[str, float] = field(default_factory=dict)
     halves: Halves | None = None
+    apart: RunsApart | None = None
+    kinds: TwoKinds | None = None
+
+    @property
+    def mixed(self) -> str:
+        """Why one parameter set is true of no part of the recordings; "" where it may be."""
+        found = self.apart or self.kinds
+        return found.note() if found else ""
 
     def to_parameters(self, source: str) -> TerrainParameters:
         """The table of a parameter set, with the effects that the model has."""

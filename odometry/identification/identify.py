@@ -21,8 +21,10 @@ from odometry.identification.halves import (
     held_out_errors,
 )
 from odometry.identification.identification import Identification, Identified
+from odometry.identification.runs_apart import runs_apart
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
+from odometry.identification.two_kinds import two_kinds
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
@@ -102,7 +104,9 @@ def identify(
         for name, of in models.items()
     }
     runs_by_terrain = (len(set(here.run)) for here in by_terrain.values())
-    fits = sum(3 + (min(count, MOST_FOLDS) if count > 1 else 0) for count in runs_by_terrain)
+    fits = sum(
+        3 + (min(count, MOST_FOLDS) + count if count > 1 else 0) for count in runs_by_terrain
+    )
     off = None if show_progress else True
     terrains = {}
     with tqdm(total=fits, unit="fit", disable=off) as bar:
@@ -117,7 +121,9 @@ def identify(
                 window_config=window_config,
                 solver_config=solver_config,
             )
-            terrains[name] = _identified(here, _counted(fit_to, bar), robot, given)
+            found = _identified(here, _counted(fit_to, bar), robot, given)
+            kinds = None if found.apart else two_kinds(here, fit_to, found.fit)
+            terrains[name] = replace(found, kinds=kinds)
     return Identification(robot, terrains, window_config)
 
 
@@ -188,7 +194,8 @@ def _identified(
     ideal = errors_over(MODELS["differential_drive"], np.array([robot.track_width]), windows)
     halves = halves_of(windows, fit_to, fitted.values)
     held_out = _held_out(windows, fit_to, fitted.values, halves)
-    return Identified(fitted, *held_out, ideal, given, halves)
+    apart = runs_apart(windows, fit_to, fitted.values)
+    return Identified(fitted, *held_out, ideal, given, halves, apart)
 
 
 def _held_out(

@@ -1,6 +1,7 @@
 """What `identify` prints and the files that it writes, claimed before any work."""
 
 import shlex
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -83,6 +84,9 @@ def print_identification(found: "Identification") -> None:
     from odometry.windows.record import words
 
     for name, of_terrain in found.terrains.items():
+        if of_terrain.mixed:
+            click.echo(f"Warning: [{name}] {of_terrain.mixed}", err=True)
+    for name, of_terrain in found.terrains.items():
         click.echo("\n".join(report(name, of_terrain)))
         short = short_windows(of_terrain.fit.windows, found.window_config)
         doubts = (
@@ -99,13 +103,27 @@ def print_identification(found: "Identification") -> None:
         click.echo(f"Note: {words(found.left_out)}", err=True)
 
 
-def warned(identified: "ParameterSet") -> "tuple[ParameterSet, str]":
-    """The set whose tables say what the check warns of, and the last words; "" where nothing.
+def warned(found: "Identification") -> "tuple[ParameterSet, str]":
+    """The set whose tables say what is to be doubted, and the last words; "" where nothing is.
 
     It is written all the same: what the check finds odd may be what the robot did.
     """
-    from dataclasses import replace
+    identified, by_check = _warned_by_check(found.to_parameter_set())
+    mixed = [name for name, of_terrain in found.terrains.items() if of_terrain.mixed]
+    if not mixed:
+        return identified, by_check
+    terrains = dict(identified.terrains)
+    for name in mixed:
+        source = f"{terrains[name].source}; an average of parts that differ"
+        terrains[name] = replace(terrains[name], source=source)
+    last = (
+        f"These parameters are not recommended: {', '.join(mixed)} is an average of parts that "
+        "differ (see the warning above)."
+    )
+    return replace(identified, terrains=terrains), "\n".join(filter(None, (last, by_check)))
 
+
+def _warned_by_check(identified: "ParameterSet") -> "tuple[ParameterSet, str]":
     from odometry.checks.finding import Level
     from odometry.checks.warned import faults_of, sensor_faults
     from terrain.cli.recordings import checks_made

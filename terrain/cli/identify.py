@@ -141,7 +141,7 @@ def identify(
     if profile:
         found = with_profiles(found, solver_config)
     print_identification(found)
-    identified, not_recommended = warned(found.to_parameter_set())
+    identified, not_recommended = warned(found)
     write_parameters(out, identified, comment(made))
     WHOLE.append(out)
     click.echo(f"Wrote {out}")

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.identification.halves import BY_CHANCE, Halves
+from odometry.identification.fit_pair import BY_CHANCE
+from odometry.identification.halves import Halves
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
 from odometry.run import Run

@@ -179,3 +179,21 @@ def test_true_slip_is_identified_as_it_is(command, curvy_run, monkeypatch):
     _, output, _ = command(curvy_run, *SHORT)
     assert "not recommended" not in output
     assert "Next, on a run" in output
+
+
+def test_runs_that_do_not_fit_one_model_are_said_first(command, curvy_run, tmp_path):
+    """The left encoder of one of them counts 1.3 times as much."""
+    other = shutil.copytree(curvy_run, tmp_path / "other")
+    header, *lines = (other / "odometry.csv").read_text().splitlines()
+    place = header.split(",").index("v_left")
+    rows = [line.split(",") for line in lines]
+    for row in rows:
+        row[place] = str(1.3 * float(row[place]))
+    (other / "odometry.csv").write_text("\n".join([header, *map(",".join, rows)]) + "\n")
+    code, output, messages = command(curvy_run, other, *SHORT)
+    assert code == 0, messages
+    assert "Warning: [ground] the runs do not fit one model: curvy against other." in messages
+    assert "These parameters are not recommended: ground is an average of parts" in output
+    assert "Next, on a run" not in output
+    (table,) = read_parameters(command.out).terrains.values()
+    assert "; an average of parts that differ" in table.source
