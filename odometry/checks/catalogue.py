@@ -78,6 +78,7 @@ CATALOGUE: dict[str, str] = {
     "coarse_positions": "positions rounded (single precision)",
     "noisy_positions": "positions that scatter",
     "interpolated_poses": "poses between measured ones",
+    "smoothed_poses": "poses that a filter has smoothed",
     "repeated_poses": "poses held between updates",
     "pose_bursts": "stamps of arrival of the poses, in bursts",
     "pose_outage": "no poses for a while",

@@ -111,7 +111,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
     ),
-    "interpolated_poses": frozenset({"clocks_apart", "yaw_jumps"}),
+    "interpolated_poses": frozenset({"clocks_apart", "yaw_jumps", "smoothed_poses"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),
     "tread_unit": frozenset({"track_width", "slip_in_turns", "slip"}),
     "slip": frozenset({"pose_late", "treads_late"}),
@@ -136,7 +136,7 @@ NOT_CURVES = frozenset(
 OF_TURNS = frozenset(
     {"pose_late", "clocks_apart", "clock_set", "poses_unrelated", "poses_are_wheel_odometry"}
     | {"pose_mirrored", "interpolated_poses", "repeated_poses", "frozen_poses", "turns_at_rest"}
-    | {"uneven_stamps", "sensors_disagree"}
+    | {"uneven_stamps", "sensors_disagree", "smoothed_poses"}
 )
 
 
@@ -151,8 +151,11 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     implied = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
     if names & NOT_CURVES:
         implied.add("treads_not_proportional")
-    if any(f.level is not Level.NOTE and f.name != "sensors_disagree" for f in findings):
+    faults = {f.name for f in findings if f.level is not Level.NOTE} - {"sensors_disagree"}
+    if faults:
         implied.add("sensors_disagree")  # it is for what has no name
+    if faults - {"smoothed_poses"}:
+        implied.add("smoothed_poses")  # what is wrong otherwise may look smooth
     if any(f.level is not Level.NOTE and _is_of_turns(f.name) for f in findings):
         implied.add("gyroscope_scale")  # what is wrong by a little may be a part of it
     return [finding for finding in findings if finding.name not in implied]

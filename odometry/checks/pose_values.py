@@ -13,6 +13,7 @@ from odometry.checks.position_noise import noisy_positions
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import beyond_treads
 from odometry.positions.rounding import rounding_step_m
+from odometry.windows.interpolated import FEWEST, MOST, interpolated, line_ends, on_lines
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
@@ -20,7 +21,7 @@ EQUATOR_M, WEB_MAP_M = 6_378_137.0, 2.004e7  # radius, and half the width of suc
 FARTHEST = 1.1  # m for each metre of the treads: no robot goes farther
 STRETCHED = (0.75, 1.1)  # the same, of positions whose stretch is undone
 COARSE_M = 0.02
-INTERPOLATED = 0.5  # share of second differences that are nothing
+CUTS_RAD = 0.1  # turn on a line between two poses, that the line does not show
 SAME_RAD = 0.003  # yaw and course this near are one thing written twice
 
 
@@ -34,7 +35,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     yield from _frame(evidence, positions)
     new = np.concatenate([[True], (np.diff(positions, axis=0) != 0).any(axis=1)])
     yield from _coarse(stamps_s[new], positions[new])
-    yield from _interpolated(stamps_s, positions)
+    yield from _interpolated(evidence, stamps_s, positions)
     yield from noisy_positions(evidence, stamps_s[new], positions[new])
     if evidence.yaw_measured:
         yield from _yaw_constant(evidence, rows)
@@ -127,24 +128,42 @@ def _grid(values: FloatArray) -> float | None:
     return step if whole[small].mean() > 0.98 and small.mean() > 0.3 else None
 
 
-def _interpolated(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
-    velocity = np.diff(positions, axis=0) / np.diff(stamps_s)[:, None]
-    speed = np.hypot(*velocity.T)
-    moving = (speed[1:] > 0.1 * np.quantile(speed, 0.9)) & (speed[:-1] > 0)
-    if moving.sum() < 20:
+def _interpolated(
+    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray
+) -> Iterator[Finding]:
+    moving, on_line = on_lines(stamps_s, positions)
+    if moving.sum() < FEWEST:
         return
-    change = np.hypot(*np.diff(velocity, axis=0).T)[moving]
-    if np.quantile(change, 0.98) < 0.05 * np.median(speed):
+    velocity = np.diff(positions, axis=0) / np.diff(stamps_s)[:, None]
+    change = np.hypot(*np.diff(velocity, axis=0).T)[moving[1:-1]]
+    if np.quantile(change, 0.98) < 0.05 * np.median(np.hypot(*velocity.T)):
         return  # a steady drive on a straight line: poses between two others say nothing more
-    share = float(np.mean(change < 1e-3 * speed[1:][moving]))
-    if share > INTERPOLATED:
+    share = float(on_line[moving].mean())
+    if share > MOST:
+        left_out = interpolated(stamps_s, positions).any()
+        cuts = (
+            not left_out and _turned_rad(evidence, stamps_s[line_ends(on_line & moving)]) > CUTS_RAD
+        )
         yield Finding(
             "interpolated_poses",
-            Level.NOTE,
+            Level.WARNING if cuts else Level.NOTE,
             f"{100 * share:.0f} % of the poses lie exactly on the line between their neighbours",
-            "Poses are interpolated (resampled) between fewer measured ones",
-            "Keep the measured ones: the others share their noise and seem too good",
+            "Poses are interpolated (resampled) between fewer measured ones: the lines cut curves "
+            "short, and parameters identified from them are biased",
+            "Keep the measured ones: the others share their noise and seem too good"
+            + ("; `identify`, `compare` and `gap` leave the others out" if left_out else ""),
         )
+
+
+def _turned_rad(evidence: Evidence, lines_s: FloatArray) -> float:
+    """Median turn of the robot on lines (L, 2) between stamps, by gyroscope, else by treads."""
+    of = evidence.integrals
+    begin_s, end_s = lines_s.T
+    turned = of.gyroscope_rad(end_s) - of.gyroscope_rad(begin_s)
+    if not np.isfinite(turned).any():
+        travel = (of.right_m(s) - of.left_m(s) for s in (end_s, begin_s))
+        turned = np.subtract(*travel) / (3 * evidence.run.robot.track_width)
+    return float(np.nanmedian(np.abs(turned))) if np.isfinite(turned).any() else 0.0
 
 
 def _yaw_constant(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:

@@ -34,6 +34,7 @@ from odometry.checks.proportion import proportion
 from odometry.checks.settings import columns, settings
 from odometry.checks.settings_names import robot_sizes, settings_names
 from odometry.checks.sides import scale_change, sides
+from odometry.checks.smoothed_poses import smoothed_poses
 from odometry.checks.stamp_pace import stamp_pace
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.stuck_encoders import stuck_encoders
@@ -57,6 +58,7 @@ CHECKS: tuple[Check, ...] = (
     interleaved,
     computed_poses,
     pose_values,
+    smoothed_poses,
     agreement,
     yaw_against_course,
     turning,

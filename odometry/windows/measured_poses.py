@@ -9,6 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
 from odometry.run import Run
+from odometry.windows.interpolated import interpolated
 from odometry.windows.spans import touched
 
 YAW_FOUND = "yaw_from_positions_sigma"  # column of pose tables whose yaw is no measured one
@@ -24,19 +25,29 @@ LEAST_TURNED_RAD = 2.0  # over all pairs: less determines no scale
 def measured_poses(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stamps (M,), poses (M, 3) and source windows (M,), without rows of missing cells.
 
+    Rows that were interpolated between measured ones are left out (`interpolated`).
+
     Poses are those of the robot: where `[sensors]` states a lever arm, the measured position less
     R(yaw) times it.
     """
     if run.pose is None:
         return np.empty(0), np.empty((0, 3)), np.empty(0)
     poses = run.pose.stack("x", "y", "yaw")
-    measured = np.isfinite(poses).all(axis=1)
+    measured = _measured(run.pose.stamps_s, poses)
     windows = run.pose["window"] if "window" in run.pose.columns else np.zeros(len(poses))
     return (
         run.pose.stamps_s[measured],
         of_robot(run, poses[measured]),
         np.nan_to_num(windows)[measured],
     )
+
+
+def _measured(stamps_s: FloatArray, poses: FloatArray) -> BoolArray:
+    """Which rows (M,) of poses (M, 2 or 3) are complete and were measured."""
+    rows = np.flatnonzero(np.isfinite(poses).all(axis=1))
+    measured = np.zeros(len(poses), dtype=np.bool_)
+    measured[rows[~interpolated(stamps_s[rows], poses[rows, :2])]] = True
+    return measured
 
 
 def of_robot(run: Run, poses: FloatArray) -> FloatArray:
@@ -55,12 +66,12 @@ def positions_at(time_s: FloatArray, stamps_s: FloatArray, poses: FloatArray) ->
 def measured_positions(run: Run) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Stamps (M,), positions (M, 2) and source windows (M,) of rows with x and y, yaw or not.
 
-    Positions are those of the antenna, as recorded.
+    Positions are those of the antenna, as recorded; interpolated ones are left out.
     """
     if run.pose is None:
         return np.empty(0), np.empty((0, 2)), np.empty(0)
     positions = run.pose.stack("x", "y")
-    measured = np.isfinite(positions).all(axis=1)
+    measured = _measured(run.pose.stamps_s, positions)
     windows = run.pose["window"] if "window" in run.pose.columns else np.zeros(len(positions))
     return run.pose.stamps_s[measured], positions[measured], np.nan_to_num(windows)[measured]
 

@@ -1,0 +1,59 @@
+"""Poses that were computed on straight lines between measured ones: they cut curves short."""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+
+MOST = 0.5  # share of the poses in motion, from which poses are taken for interpolated
+STRAIGHT = 1e-3  # change of velocity, as a share of the speed
+MOVING = 0.1  # of the ordinary fastest speed
+FEWEST = 20  # poses in motion
+REGULAR = 0.8  # share of the lines that last as long as usual: a straight drive lasts as it will
+AS_USUAL, ROWS = 0.1, 1.5  # by a share, or by so many rows
+
+
+def on_lines(stamps_s: FloatArray, positions: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """Rows (M,) in motion, and rows (M,) on the line between their neighbours at even speed."""
+    moving, on_line = np.zeros((2, len(stamps_s)), dtype=np.bool_)
+    if len(stamps_s) < FEWEST:
+        return moving, on_line
+    velocity = np.diff(positions, axis=0) / np.diff(stamps_s)[:, None]
+    speed = np.hypot(*velocity.T)
+    slow = MOVING * np.quantile(speed, 0.9)
+    moving[1:-1] = (speed[1:] > slow) & (speed[:-1] > 0)
+    change = np.hypot(*np.diff(velocity, axis=0).T)
+    on_line[1:-1] = change < STRAIGHT * np.maximum(speed[1:], slow)
+    return moving, on_line
+
+
+def interpolated(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
+    """Which poses (M,) lie on straight lines between measured ones, where most of them do.
+
+    The lines last equally long, as between poses that were measured at a lower rate.
+
+    Parameters
+    ----------
+    stamps_s : (M,)
+        Ascending.
+    positions : (M, 2)
+    """
+    moving, on_line = on_lines(stamps_s, positions)
+    none = np.zeros(len(stamps_s), dtype=np.bool_)
+    if moving.sum() < FEWEST or on_line[moving].mean() <= MOST:
+        return none
+    ends = line_ends(on_line)
+    lasts_s = np.diff(stamps_s[ends], axis=1)[:, 0]
+    usual_s = np.median(lasts_s)
+    near_s = max(AS_USUAL * usual_s, ROWS * float(np.median(np.diff(stamps_s))))
+    regular = np.abs(lasts_s - usual_s) <= near_s
+    if regular.mean() < REGULAR:
+        return none
+    for first, last in ends[regular]:
+        none[first + 1 : last] = True
+    return none
+
+
+def line_ends(on_line: BoolArray) -> IntArray:
+    """First and last row (L, 2) of each line: the rows beside those on it."""
+    edges = np.diff(on_line.astype(np.int8))
+    return np.stack([np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) + 1], axis=-1)
