@@ -10,7 +10,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 
 GRID_S = 0.05
-SMOOTHED_S = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 3.4, 4.0)  # slip on ice looks like the longest
+SMOOTHED_S = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)  # slip on ice and wind look like the longest
 STRETCH_S = 20.0
 FEWEST, FEWEST_POSES = 3, 15  # stretches, and poses in each
 SHORTEST_M = 1.0  # of a stretch
@@ -21,7 +21,7 @@ MOST_STRETCHES = 0.9  # have less
 def smoothed_poses(evidence: Evidence) -> Iterator[Finding]:
     """The path of treads and gyroscope fits the positions far better when it is smoothed.
 
-    On each stretch the positions are fitted by that path with a free scale, side slip, lever arm
+    On each stretch the positions are fitted by that path with free scales, side slip, lever arm
     and place: as it is, and as a moving mean over several times. Positions that were measured fit
     it best as it is, or nearly so.
     """
@@ -71,12 +71,17 @@ def _distances(
 
 
 def _path(evidence: Evidence, grid_s: FloatArray) -> AnyArray:
-    """Complex columns (3, N): way of the mean speed, of the difference, and the heading."""
+    """Complex columns (4, N): way of the mean speed, of the difference, and the heading.
+
+    The second is the derivative of the first by the scale of the gyroscope.
+    """
     of = evidence.integrals
-    heading = np.exp(1j * np.nan_to_num(of.gyroscope_rad(grid_s)))
+    turned_rad = np.nan_to_num(of.gyroscope_rad(grid_s))
+    heading = np.exp(1j * turned_rad)
     left, right = np.diff(of.left_m(grid_s)), np.diff(of.right_m(grid_s))
     between = (heading[1:] + heading[:-1]) / 2
-    ways = np.cumsum(np.stack([left + right, right - left]) * between, axis=1)
+    by_scale = 1j * (turned_rad[1:] + turned_rad[:-1]) / 2 * (left + right)
+    ways = np.cumsum(np.stack([left + right, by_scale, right - left]) * between, axis=1)
     return np.vstack([np.insert(ways, 0, 0.0, axis=1), heading])
 
 

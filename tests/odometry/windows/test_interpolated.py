@@ -28,9 +28,9 @@ def recorded(synthetic, tmp_path_factory):
 
 
 def resampled(run, fixes):
-    """Poses on straight lines between those of some rows."""
+    """Poses on straight lines between those of some rows, with six digits."""
     t = run.pose.stamps_s
-    columns = {n: np.interp(t, t[fixes], run.pose[n][fixes]) for n in ("x", "y", "yaw")}
+    columns = {n: np.interp(t, t[fixes], run.pose[n][fixes]).round(6) for n in ("x", "y", "yaw")}
     return replace(run, pose=replace(run.pose, columns={**run.pose.columns, **columns}))
 
 
