@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.errors import IdentificationError
+from odometry.errors import IdentificationError, OdometryError
 from odometry.identification.fit import Fit
 from odometry.identification.fit_pair import FitPair
 from odometry.identification.fitters import FitTo
@@ -100,6 +100,13 @@ def two_kinds(windows: Windows | Stretches, fit_to: FitTo, whole: Fit) -> TwoKin
         return None
     if whole.scale <= FAR_RESIDUALS:
         return None
+    try:
+        return _divided(windows, fit_to, whole)
+    except OdometryError:  # a part that determines nothing, or values out of bounds
+        return None
+
+
+def _divided(windows: Windows, fit_to: FitTo, whole: Fit) -> TwoKinds | None:
     pieces = _pieces(windows, fit_to, whole.values)
     if len(pieces) < 2:
         return None
@@ -108,10 +115,7 @@ def two_kinds(windows: Windows | Stretches, fit_to: FitTo, whole: Fit) -> TwoKin
         combinations(errors, 2),
         key=lambda pair: float(np.sum(np.minimum(errors[pair[0]], errors[pair[1]]) ** 2)),
     )
-    try:
-        pair, is_second = _in_turns(windows, fit_to, FitPair(pieces[first], pieces[second]))
-    except IdentificationError:
-        return None
+    pair, is_second = _in_turns(windows, fit_to, FitPair(pieces[first], pieces[second]))
     under_own = np.where(is_second, _errors(pair.second, windows), _errors(pair.first, windows))
     less = float(np.median(under_own) / np.median(_errors(whole, windows)))
     rarer = min(is_second.mean(), 1 - is_second.mean())

@@ -9,6 +9,7 @@ STRAIGHT = 1e-3  # change of velocity, as a share of the speed
 MOVING = 0.1  # of the ordinary fastest speed
 FEWEST = 20  # poses in motion
 REGULAR = 0.8  # share of the lines that last as long as usual: a straight drive lasts as it will
+FEWEST_LINES, SHORTEST = 5, 5  # lines, and steps of the usual one: shorter lines cut little
 AS_USUAL, ROWS = 0.1, 1.5  # by a share, or by so many rows
 
 
@@ -42,6 +43,8 @@ def interpolated(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
     if moving.sum() < FEWEST or on_line[moving].mean() <= MOST:
         return none
     ends = line_ends(on_line)
+    if len(ends) < FEWEST_LINES or np.median(np.diff(ends, axis=1)) < SHORTEST:
+        return none
     lasts_s = np.diff(stamps_s[ends], axis=1)[:, 0]
     usual_s = np.median(lasts_s)
     near_s = max(AS_USUAL * usual_s, ROWS * float(np.median(np.diff(stamps_s))))
