@@ -79,7 +79,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
     | {"treads_unequal", "tread_offset", "slip", "scale", "track_width", "slip_in_turns"},
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
-    | {"far_sensor", "track_width", "treads_unequal", "tread_offset"},
+    | {"far_sensor", "track_width", "treads_unequal", "tread_offset", "turn_blocked"},
     "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
     "clock_set": frozenset({"pose_jumps", "slip", "scale"}),
     "dropped_speeds": frozenset({"treads_not_proportional"}),
@@ -110,6 +110,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "gyroscope_held": frozenset({"gyroscope_dead", "yaw_jumps", "yaw_bent"}),
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
+        | {"turn_blocked"}
     ),
     "interpolated_poses": frozenset({"clocks_apart", "yaw_jumps", "smoothed_poses"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.checks.attitude import attitude
+from odometry.checks.blocked_turns import blocked_turns
 from odometry.checks.compass_error import bent
 from odometry.checks.computed_poses import computed_poses
 from odometry.checks.confirmed import alone, confirmed
@@ -74,6 +75,7 @@ CHECKS: tuple[Check, ...] = (
     sides,
     proportion,
     tread_motion,
+    blocked_turns,
     tread_samples,
     treads,
     gaps,

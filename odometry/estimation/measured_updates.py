@@ -180,6 +180,7 @@ class VelocityUpdate:
         """
         speeds, step_s = estimate.tread_speeds_m_s, frame.stamp_s - estimate.stamp_s
         known = step_s > 0 and not frame.in_gap and not math.isnan(speeds[0] + speeds[1])
+        known &= estimate.watch is None or not estimate.watch.is_frozen
         if frame.velocity is None or not known:
             return belief
         variances = velocity_variances(

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimation import sensor_watch
+from odometry.estimation import sensor_watch, tread_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
+from odometry.estimation.frozen_treads import restored
 from odometry.estimation.kalman import bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
 from odometry.estimation.noise_scale import huber_factor, tread_variance
@@ -153,7 +154,9 @@ class Prediction:
         watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)
         if frame.in_gap or watch.is_doubtful:
             newly_stuck = watch.treads.stuck >= 0 and not was_stuck
-            belief = sensor_watch.parted(belief, watch, newly_stuck=newly_stuck)
+            if watch.frozen is not None and watch.is_frozen and not seen.watch.is_frozen:
+                belief = restored(watch.frozen, frame.stamp_s, GAP_DENSITY[0])
+            belief = tread_watch.parted(belief, watch.treads, newly_stuck=newly_stuck)
         return Predicted(belief, yaw_rate, seen.pose, speeds, watch, events)
 
     def _moved(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
@@ -175,7 +178,7 @@ class Prediction:
             step_s,
             slip_scale=estimate.scale.slip,
             by_gyroscope=by_gyroscope,
-            in_gap=frame.in_gap,
+            in_gap=frame.in_gap or (estimate.watch is not None and estimate.watch.is_frozen),
             bias_walk=1.0 if estimate.watch is None else estimate.watch.bias.walk,
         )
         covariance = predicted(estimate.covariance, jacobian, half_noise)

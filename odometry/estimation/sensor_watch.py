@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from odometry.arrays import FloatArray
 from odometry.estimation import (
+    frozen_treads,
     gyroscope_hold,
     gyroscope_watch,
     pose_watch,
@@ -13,6 +14,7 @@ from odometry.estimation import (
 )
 from odometry.estimation.bias_watch import BiasWatch
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.frozen_treads import FrozenTreads
 from odometry.estimation.gyroscope_hold import GyroscopeHold
 from odometry.estimation.gyroscope_watch import GyroscopeWatch
 from odometry.estimation.measurement import Gaussian
@@ -40,6 +42,8 @@ class SensorWatch(NamedTuple):
         Of the gyroscope against the poses.
     rest : RestWatch or None
         Of the poses while the treads stand.
+    frozen : FrozenTreads or None
+        While the gyroscope says that the robot does not turn as the treads do.
     """
 
     treads: TreadWatch
@@ -49,11 +53,18 @@ class SensorWatch(NamedTuple):
     hold: GyroscopeHold | None = None
     bias: BiasWatch = BiasWatch()
     rest: RestWatch | None = None
+    frozen: FrozenTreads | None = None
 
     @property
     def is_doubtful(self) -> bool:
         """Whether a tread contradicts the rest, so that the ICRs are not to be updated."""
-        return self.treads.stuck >= 0 or not math.isnan(self.treads.off_since_s)
+        treads = self.treads
+        return treads.stuck >= 0 or not math.isnan(treads.off_since_s) or self.is_frozen
+
+    @property
+    def is_frozen(self) -> bool:
+        """Whether no tread speed is known, because both are frozen or the robot is blocked."""
+        return self.frozen is not None and self.frozen.is_found
 
     @property
     def is_gyroscope_held(self) -> bool:
@@ -88,8 +99,8 @@ class Sensed(NamedTuple):
 
 def with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
     """The watch with another one of the gyroscope's bias."""
-    treads, gyroscope, poses, gap_since_s, hold, _, rest = watch
-    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest)
+    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen = watch
+    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen)
 
 
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
@@ -156,7 +167,8 @@ def sensed(
     )
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, watch.bias, watch.rest)
+    kept = watch.bias, watch.rest, watch.frozen
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *kept)
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
 
 
@@ -194,7 +206,7 @@ def with_treads(
     slip_scale : float
         Factor on the variance of slip: where treads slip much, a stuck one cannot be detected.
     """
-    watch, yaw_rate = before.watch, before.yaw_rate_rad_s
+    watch, yaw_rate, held_m_s = before.watch, before.yaw_rate_rad_s, speeds_m_s
     treads = watch.treads
     if not math.isnan(yaw_rate) and not frame.in_gap:
         treads = tread_watch.contradicted(treads, frame.stamp_s, belief, yaw_rate, slip_scale)
@@ -203,22 +215,17 @@ def with_treads(
     treads, freed = tread_watch.freed(treads, frame.stamp_s)
     if treads.stuck >= 0 and not math.isnan(speeds_m_s[0]):
         speeds_m_s = tread_watch.with_implied(treads, speeds_m_s, belief, yaw_rate)
-    if treads is not watch.treads:
-        watch = watch._replace(treads=treads)
-    return watch, speeds_m_s, before.events + spikes + freed
-
-
-def parted(belief: Gaussian, watch: SensorWatch, *, newly_stuck: bool) -> Gaussian:
-    """State estimate whose pose is uncorrelated with the rest: a pose then corrects the pose alone.
-
-    Where a tread was found stuck, the rest is as it was before its reading stood still.
-    """
-    mean, covariance = belief[0].copy(), belief[1].copy()
-    if newly_stuck:
-        then_mean, then_covariance = watch.treads.before[watch.treads.stuck]
-        mean[3:], covariance[3:, 3:] = then_mean[3:], then_covariance[3:, 3:]
-    covariance[:3, 3:], covariance[3:, :3] = 0.0, 0.0
-    return mean, covariance
+    frozen, thawed = frozen_treads.stepped(
+        watch.frozen,
+        frame,
+        before.begin_s,
+        speeds_m_s=held_m_s,
+        yaw_rate=yaw_rate,
+        belief=before.belief,
+    )
+    if treads is not watch.treads or frozen is not watch.frozen:
+        watch = watch._replace(treads=treads, frozen=frozen)
+    return watch, speeds_m_s, before.events + spikes + freed + thawed
 
 
 def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
@@ -229,6 +236,7 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
     if watch.treads.stuck >= 0:
         stuck = watch.treads._replace(same_since_s=(stamp_s, stamp_s))
         found += tread_watch.freed(stuck, stamp_s)[1]
+    found += frozen_treads.ended(watch.frozen, stamp_s)
     if watch.hold is not None:
         found += gyroscope_hold.ended(watch.hold, stamp_s)
     found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)

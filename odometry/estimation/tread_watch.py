@@ -164,6 +164,19 @@ def with_implied(
     return replaced
 
 
+def parted(belief: Gaussian, watch: TreadWatch, *, newly_stuck: bool) -> Gaussian:
+    """State estimate whose pose is uncorrelated with the rest: a pose then corrects the pose alone.
+
+    Where a tread was found stuck, the rest is as it was before its reading stood still.
+    """
+    mean, covariance = belief[0].copy(), belief[1].copy()
+    if newly_stuck:
+        then_mean, then_covariance = watch.before[watch.stuck]
+        mean[3:], covariance[3:, 3:] = then_mean[3:], then_covariance[3:, 3:]
+    covariance[:3, 3:], covariance[3:, :3] = 0.0, 0.0
+    return mean, covariance
+
+
 def _is_width_known(belief: Gaussian) -> bool:
     mean, covariance = belief
     width = float(mean[Y_LEFT] - mean[Y_RIGHT])

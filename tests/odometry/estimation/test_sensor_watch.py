@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.sensor_watch import _moved, parted
+from odometry.estimation.sensor_watch import _moved
+from odometry.estimation.tread_watch import parted
 
 
 def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng):

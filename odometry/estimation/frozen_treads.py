@@ -1,0 +1,126 @@
+"""Treads that keep their speeds and turn the robot, while the gyroscope says it does not turn.
+
+The log holds its last values, or the robot is blocked: no speed is known, as in a gap.
+"""
+
+import math
+from typing import NamedTuple
+
+from odometry.arrays import FloatArray
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian
+from odometry.estimation.transition import (
+    ALPHA_LEFT,
+    ALPHA_RIGHT,
+    GYRO_BIAS,
+    Y_LEFT,
+    Y_RIGHT,
+    YAW,
+    X,
+    Y,
+)
+from odometry.frames import Frame
+
+FROZEN_S = 2.0  # for so long the gyroscope must say so
+# By which treads differ in a turn; and by more than their mean speed: treads that differ by less go
+# straight on where one is scaled wrongly.
+TURNS_M_S = 0.15
+STANDS = 0.2  # share of their turn, up to which the robot does not turn
+
+
+class FrozenTreads(NamedTuple):
+    """A stretch in which they do, or may do.
+
+    Attributes
+    ----------
+    since_s : float
+    belief : (9,), (9, 9)
+        State estimate then, with the turn by the gyroscope since.
+    is_found : bool
+        Whether it has lasted for long enough.
+    """
+
+    since_s: float
+    belief: Gaussian
+    is_found: bool = False
+
+
+def stepped(
+    watch: FrozenTreads | None,
+    frame: Frame,
+    begin_s: float,
+    *,
+    speeds_m_s: FloatArray,
+    yaw_rate: float,
+    belief: Gaussian,
+) -> tuple[FrozenTreads | None, tuple[FilterEvent, ...]]:
+    """The watch after the step to a frame, and the event of a stretch that ended there.
+
+    Parameters
+    ----------
+    watch : FrozenTreads or None
+    frame : Frame
+    begin_s : float
+        Stamp of the beginning of the step.
+    speeds_m_s : (2,)
+        Tread speeds over the step, which are those of all steps since `watch.since_s`.
+    yaw_rate : float
+        Of the gyroscope over the step [rad/s]; NaN where there is none.
+    belief : (9,), (9, 9)
+        State estimate at its beginning.
+    """
+    if frame.in_gap or math.isnan(speeds_m_s[0] + speeds_m_s[1]):
+        return None, ended(watch, begin_s)
+    watch = _watched(watch, speeds_m_s, yaw_rate, (begin_s, frame.stamp_s), belief)
+    if watch is None or (frame.tread_speeds_m_s == speeds_m_s).all():
+        return watch, ()
+    return None, ended(watch, frame.stamp_s)
+
+
+def _watched(
+    watch: FrozenTreads | None,
+    speeds_m_s: FloatArray,
+    yaw_rate: float,
+    times_s: tuple[float, float],
+    belief: Gaussian,
+) -> FrozenTreads | None:
+    """The watch after a step from one time to the other; None where the robot turns."""
+    left, right = speeds_m_s.tolist()
+    mean, covariance = belief if watch is None else watch.belief
+    asked = float(mean[ALPHA_RIGHT]) * right - float(mean[ALPHA_LEFT]) * left
+    rate = yaw_rate - float(mean[GYRO_BIAS])
+    turned = float(mean[Y_LEFT] - mean[Y_RIGHT]) * rate
+    turns = abs(asked) > max(TURNS_M_S, abs(left + right) / 2)
+    stands = turns and abs(turned) < STANDS * abs(asked)
+    if not stands and (watch is None or not watch.is_found):
+        return None
+    begin_s, end_s = times_s
+    mean = mean.copy()
+    mean[YAW] += 0.0 if math.isnan(rate) else rate * (end_s - begin_s)
+    since_s = begin_s if watch is None else watch.since_s
+    return FrozenTreads(since_s, (mean, covariance), end_s - since_s >= FROZEN_S)
+
+
+def restored(watch: FrozenTreads, stamp_s: float, position_density: float) -> Gaussian:
+    """State estimate without what the treads changed since the stretch began.
+
+    The position is less certain, by a density [m^2/s]; the yaw is so by the gyroscope's bias.
+    """
+    mean, covariance = watch.belief[0].copy(), watch.belief[1].copy()
+    lasts_s = stamp_s - watch.since_s
+    covariance[X, X] += position_density * lasts_s
+    covariance[Y, Y] += position_density * lasts_s
+    covariance[YAW, YAW] += float(covariance[GYRO_BIAS, GYRO_BIAS]) * lasts_s**2
+    return mean, covariance
+
+
+def ended(watch: FrozenTreads | None, stamp_s: float) -> tuple[FilterEvent, ...]:
+    """The event of a stretch that was found."""
+    if watch is None or not watch.is_found:
+        return ()
+    text = (
+        "both treads kept their speeds while the gyroscope read that the robot does not turn: the "
+        "log held its last values, or the robot was blocked or its wheels spun; neither the bias "
+        "of the gyroscope nor the ICRs were updated, and the position is not known well"
+    )
+    return (FilterEvent("treads_frozen", watch.since_s, stamp_s, text),)
