@@ -115,6 +115,8 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         found["turns"] = track.turns_are_off
     if track.headings_disagree is not None:
         found["headings"] = track.headings_disagree
+    if track.blocked is not None:
+        found["blocked"] = track.blocked
     if track.travel is not None:
         found["travel"] = track.travel.off[of_most]
     return found

@@ -15,6 +15,7 @@ from odometry.modes.measured_steps import (
 )
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
+from odometry.windows.blocked_turns import blocked_spans
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.turns import continuous_yaw
 
@@ -46,6 +47,8 @@ class Signals:
         Measured positions, where they are no measurement of the filters.
     turn : MeasuredTurn or None
         Measured headings beside the gyroscope, where they are no measurement of the filters.
+    blocked_s : (B, 2)
+        Between which stamps the treads turn on the spot and the robot does not.
     """
 
     stamps_s: FloatArray
@@ -56,6 +59,7 @@ class Signals:
     heading_check: HeadingCheck | None = None
     travel: MeasuredTravel | None = None
     turn: MeasuredTurn | None = None
+    blocked_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
 
     def __len__(self) -> int:
         return len(self.stamps_s)
@@ -72,6 +76,7 @@ class Signals:
             self.heading_check,
             self.travel,
             self.turn,
+            self.blocked_s,
         )
 
     @property
@@ -107,7 +112,8 @@ def velocity_signals(run: Run) -> Signals:
     speeds = run.odometry.stack("v_left", "v_right")
     gaps_s = odometry_gaps(run).spans_s
     checks = heading_check(run), measured_travel(run), measured_turn(run)
-    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, *checks)
+    blocked_s = blocked_spans(stamps_s, speeds, omega, run.robot.track_width)
+    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, *checks, blocked_s)
 
 
 def pose_signals(run: Run) -> Signals:

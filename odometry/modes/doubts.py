@@ -87,6 +87,15 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, off),
             )
         )
+    if track.blocked is not None and track.blocked.any():
+        found.append(
+            Doubt(
+                "the treads turn on the spot and the robot does not turn "
+                f"{_when(followed, track.blocked)}",
+                "look whether the robot was blocked, its wheels spun, or the log held old speeds",
+                _share(followed, track.blocked),
+            )
+        )
     if track.headings_disagree is not None:
         off = track.headings_disagree & sure & undetermined
         found.append(

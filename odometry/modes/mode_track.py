@@ -45,6 +45,8 @@ class ModeTrack:
         Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
     felt : (N, M) or None
         Probability of each mode by feel alone; None without a model of feel.
+    blocked : (N,) or None
+        Where the treads turn on the spot and the robot does not; without it nowhere.
     config : ModesConfig
         By which it was followed, and is answered but for `sure`.
 
@@ -73,4 +75,5 @@ class ModeTrack:
     between: BetweenModes | None = None
     headings_disagree: BoolArray | None = None
     felt: FloatArray | None = None
+    blocked: BoolArray | None = None
     config: ModesConfig = field(default_factory=ModesConfig)

@@ -10,7 +10,7 @@ from odometry.estimation.imm import Bank
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.gyroscope_bias import moving
-from odometry.windows.spans import touched
+from odometry.windows.spans import touched, within
 
 OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution
 MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more
@@ -64,11 +64,13 @@ class TemperedBank:
 def usable_measurements(signals: Signals, gap_ends: IntArray, fastest_m_s: float) -> FloatArray:
     """Measurements (N, m) where they depend on the modes.
 
-    Not while stationary, nor in a gap, nor far above the speeds that the modes were identified at.
+    Not while stationary or blocked, nor in a gap, nor far above the speeds that the modes were
+    identified at.
     """
     faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
     informative = moving(signals) & ~np.append(False, faster[:-1])
     informative &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
+    informative &= ~within(signals.stamps_s, signals.blocked_s)
     informative[gap_ends] = False
     return np.where(informative[:, None], signals.measured, np.nan)
 

@@ -19,6 +19,7 @@ from odometry.modes.modes_config import ModesConfig
 from odometry.modes.tempered_bank import independent_share, usable_measurements
 from odometry.modes.track_checks import contradictions, gyroscope_trust_of
 from odometry.run import Run
+from odometry.windows.spans import within
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
 
@@ -128,6 +129,7 @@ def follow_signals(
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
         gyroscope_trust_of(signals, mode_set, (means[:, -1], sigmas[:, -1]), config),
         *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
+        blocked=within(signals.stamps_s, signals.blocked_s),
         config=config,
     )
 
