@@ -53,6 +53,7 @@ def stepped(
     speeds_m_s: FloatArray,
     yaw_rate: float,
     belief: Gaussian,
+    before: Gaussian,
 ) -> tuple[FrozenTreads | None, tuple[FilterEvent, ...]]:
     """The watch after the step to a frame, and the event of a stretch that ended there.
 
@@ -68,37 +69,47 @@ def stepped(
         Of the gyroscope over the step [rad/s]; NaN where there is none.
     belief : (9,), (9, 9)
         State estimate at its beginning.
+    before : (9,), (9, 9)
+        That when the treads took these speeds: they have changed bias and ICRs since.
     """
     if frame.in_gap or math.isnan(speeds_m_s[0] + speeds_m_s[1]):
         return None, ended(watch, begin_s)
-    watch = _watched(watch, speeds_m_s, yaw_rate, (begin_s, frame.stamp_s), belief)
-    if watch is None or (frame.tread_speeds_m_s == speeds_m_s).all():
+    mean = before[0] if watch is None else watch.belief[0]
+    if not _stands(mean, speeds_m_s, yaw_rate) and (watch is None or not watch.is_found):
+        return None, ()
+    if watch is None:
+        watch = FrozenTreads(begin_s, _with_pose(before, belief))
+    watch = _later(watch, begin_s, frame.stamp_s, yaw_rate)
+    if (frame.tread_speeds_m_s == speeds_m_s).all():
         return watch, ()
     return None, ended(watch, frame.stamp_s)
 
 
-def _watched(
-    watch: FrozenTreads | None,
-    speeds_m_s: FloatArray,
-    yaw_rate: float,
-    times_s: tuple[float, float],
-    belief: Gaussian,
-) -> FrozenTreads | None:
-    """The watch after a step from one time to the other; None where the robot turns."""
+def _stands(mean: FloatArray, speeds_m_s: FloatArray, yaw_rate: float) -> bool:
+    """Whether the treads turn on the spot and the gyroscope reads, less its bias, no turn."""
     left, right = speeds_m_s.tolist()
-    mean, covariance = belief if watch is None else watch.belief
     asked = float(mean[ALPHA_RIGHT]) * right - float(mean[ALPHA_LEFT]) * left
-    rate = yaw_rate - float(mean[GYRO_BIAS])
-    turned = float(mean[Y_LEFT] - mean[Y_RIGHT]) * rate
-    turns = abs(asked) > max(TURNS_M_S, abs(left + right) / 2)
-    stands = turns and abs(turned) < STANDS * abs(asked)
-    if not stands and (watch is None or not watch.is_found):
-        return None
-    begin_s, end_s = times_s
-    mean = mean.copy()
-    mean[YAW] += 0.0 if math.isnan(rate) else rate * (end_s - begin_s)
-    since_s = begin_s if watch is None else watch.since_s
-    return FrozenTreads(since_s, (mean, covariance), end_s - since_s >= FROZEN_S)
+    if abs(asked) <= max(TURNS_M_S, abs(left + right) / 2):
+        return False
+    turned = float(mean[Y_LEFT] - mean[Y_RIGHT]) * (yaw_rate - float(mean[GYRO_BIAS]))
+    return bool(abs(turned) < STANDS * abs(asked))
+
+
+def _with_pose(before: Gaussian, belief: Gaussian) -> Gaussian:
+    """A state estimate with the pose of another one, uncorrelated with the rest."""
+    mean, covariance = before[0].copy(), before[1].copy()
+    mean[:3] = belief[0][:3]
+    covariance[:3, 3:], covariance[3:, :3] = 0.0, 0.0
+    covariance[:3, :3] = belief[1][:3, :3]
+    return mean, covariance
+
+
+def _later(watch: FrozenTreads, begin_s: float, end_s: float, yaw_rate: float) -> FrozenTreads:
+    mean = watch.belief[0].copy()
+    if not math.isnan(yaw_rate):
+        mean[YAW] += (yaw_rate - float(mean[GYRO_BIAS])) * (end_s - begin_s)
+    is_found = end_s - watch.since_s >= FROZEN_S
+    return FrozenTreads(watch.since_s, (mean, watch.belief[1]), is_found)
 
 
 def restored(watch: FrozenTreads, stamp_s: float, position_density: float) -> Gaussian:

@@ -58,8 +58,7 @@ class SensorWatch(NamedTuple):
     @property
     def is_doubtful(self) -> bool:
         """Whether a tread contradicts the rest, so that the ICRs are not to be updated."""
-        treads = self.treads
-        return treads.stuck >= 0 or not math.isnan(treads.off_since_s) or self.is_frozen
+        return self.treads.is_doubtful or self.is_frozen
 
     @property
     def is_frozen(self) -> bool:
@@ -222,6 +221,7 @@ def with_treads(
         speeds_m_s=held_m_s,
         yaw_rate=yaw_rate,
         belief=before.belief,
+        before=watch.treads.before_both,
     )
     if treads is not watch.treads or frozen is not watch.frozen:
         watch = watch._replace(treads=treads, frozen=frozen)

@@ -49,6 +49,17 @@ class TreadWatch(NamedTuple):
     off_since_s: float = math.nan
     stuck: int = -1
 
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether a tread is stuck, or contradicts the rest."""
+        return self.stuck >= 0 or not math.isnan(self.off_since_s)
+
+    @property
+    def before_both(self) -> Gaussian:
+        """The estimate when the reading of either tread changed last."""
+        left_s, right_s = self.same_since_s
+        return self.before[0 if left_s > right_s else 1]
+
 
 def begun(frame: Frame, belief: Gaussian) -> TreadWatch:
     """At the first frame."""

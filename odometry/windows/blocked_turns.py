@@ -37,7 +37,9 @@ def blocked_spans(
         stamps_s[after - 1] - stamps_s[first] >= BLOCKED_S and _is_read(yaw_rates[first:after])
         for first, after in runs
     ]
-    return np.asarray(spans_s[np.array(long, dtype=np.bool_)])
+    # a mean is of what the robot did on both sides: it stands before and after as well
+    around_s = np.array([-MEAN_S / 2, MEAN_S / 2])
+    return np.asarray(spans_s[np.array(long, dtype=np.bool_)] + around_s)
 
 
 def _is_read(yaw_rates: FloatArray) -> bool:

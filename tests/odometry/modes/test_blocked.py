@@ -28,7 +28,7 @@ def test_no_mode_is_named_while_the_robot_is_blocked(rng):
     answers = named_modes(track, 0.9)
     inside = slice(HELD.start + 20, HELD.stop - 20)
     assert set(answers[inside]) <= set(NO_MODES)
-    assert np.ptp(track.probabilities[inside], axis=0).max() < 0.7
+    assert track.probabilities[HELD.stop - 20, 0] < 0.6  # of ice: the stretch is no evidence
     np.testing.assert_array_equal(answers[: HELD.start - 20], before[: HELD.start - 20])
     assert set(answers[HELD.stop + 100 :]) <= {"tar", *NO_MODES}
     assert "tar" in set(answers[HELD.stop :])

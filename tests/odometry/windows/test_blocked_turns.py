@@ -21,11 +21,11 @@ def found(*, speeds=ON_THE_SPOT, share=0.0, lasts_s=20.0, noise=0.01):
 
 
 def test_a_robot_that_stands_while_its_treads_turn_is_blocked():
-    np.testing.assert_allclose(found(), [[10.0, 30.0]], atol=0.3)
+    np.testing.assert_allclose(found(), [[10.0, 30.0]], atol=0.15)
 
 
 def test_one_that_is_shaken_is_blocked_too():
-    np.testing.assert_allclose(found(noise=0.04), [[10.0, 30.0]], atol=0.3)
+    np.testing.assert_allclose(found(noise=0.04), [[10.0, 30.0]], atol=0.15)
 
 
 @pytest.mark.parametrize(
