@@ -16,6 +16,7 @@ BOTH_STUCK_S = 3.0  # held commands of heavy faults in simulations contradict fo
 CONTRADICTED = 5.0  # times the usual residual
 SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit to all of them
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
+OTHERWISE = 0.7  # of the motion by which it differs: on another terrain it does by a half
 SHOWN = 3  # times of which begin and end are printed
 LOST = (
     "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that stopped)"
@@ -101,8 +102,10 @@ def _differs(of: Target, span: FloatArray) -> bool | None:
         return None
     size = float(np.quantile(np.abs(target[known]), 0.9))
     usual = float(np.median(np.abs(fit.residuals[known & ~inside])))
-    off = np.abs(target[inside] - treads[inside] @ fit.coefficients)
-    return float(np.median(off)) > max(2 * CONTRADICTED * usual, 0.3 * size)
+    asked, measured = treads[inside] @ fit.coefficients, target[inside]
+    larger = max(float(np.median(np.abs(of))) for of in (asked, measured))
+    least = max(2 * CONTRADICTED * usual, 0.3 * size, OTHERWISE * larger)
+    return float(np.median(np.abs(measured - asked))) > least
 
 
 def _is_as_elsewhere(target: FloatArray, of_all: Relation | None, inside: BoolArray) -> bool:

@@ -128,3 +128,12 @@ def test_a_tread_that_is_scaled_wrongly_on_straights_does_not_turn_the_robot():
         for f in check_recording(put(replace(run, pose=None), "odometry", **columns)).findings
     }
     assert "turn_blocked" not in names
+
+
+def test_held_speeds_on_a_terrain_that_turns_half_as_much_are_not_frozen():
+    run = standing(winding(), noise_m_s=0.0)
+    rate = 0.5 * 0.93 * 0.6 / 0.9
+    turns = run.odometry["gyro_z"].copy()
+    turns[BEGIN:END] += rate
+    names = {one.name for one in findings(put(run, "odometry", gyro_z=turns))}
+    assert not names & {"treads_frozen", "turn_blocked"}
