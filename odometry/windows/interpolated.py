@@ -8,7 +8,7 @@ MOST = 0.5  # share of the poses in motion, from which poses are taken for inter
 STRAIGHT = 1e-3  # change of velocity, as a share of the speed
 MOVING = 0.1  # of the ordinary fastest speed
 FEWEST = 20  # poses in motion
-REGULAR = 0.8  # share of the lines that last as long as usual: a straight drive lasts as it will
+REGULAR = 0.8  # share of the lines that last as long as usual, and of those that join: no drives
 FEWEST_LINES, SHORTEST = 5, 5  # lines, and steps of the usual one: shorter lines cut little
 AS_USUAL, ROWS = 0.1, 1.5  # by a share, or by so many rows
 
@@ -30,7 +30,8 @@ def on_lines(stamps_s: FloatArray, positions: FloatArray) -> tuple[BoolArray, Bo
 def interpolated(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
     """Which poses (M,) lie on straight lines between measured ones, where most of them do.
 
-    The lines last equally long, as between poses that were measured at a lower rate.
+    The lines last equally long, and each begins where the one before ends, as between poses that
+    were measured at a lower rate.
 
     Parameters
     ----------
@@ -49,7 +50,8 @@ def interpolated(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
     usual_s = np.median(lasts_s)
     near_s = max(AS_USUAL * usual_s, ROWS * float(np.median(np.diff(stamps_s))))
     regular = np.abs(lasts_s - usual_s) <= near_s
-    if regular.mean() < REGULAR:
+    joined = ends[1:, 0] == ends[:-1, 1]
+    if min(regular.mean(), joined.mean()) < REGULAR:
         return none
     for first, last in ends[regular]:
         none[first + 1 : last] = True

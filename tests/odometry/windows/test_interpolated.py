@@ -91,3 +91,10 @@ def test_lines_of_unequal_time_across_turns_are_a_warning(recorded):
     ]
     assert finding.level is Level.WARNING
     assert len(measured_poses(uneven)[0]) == len(uneven.pose)
+
+
+def test_even_stretches_between_short_pushes_are_no_lines_between_poses():
+    stamps_s = np.arange(0.0, 60.0, 0.1)
+    speed = np.where(np.arange(600) % 60 == 0, 0.7, 0.1)
+    x = np.concatenate([[0.0], np.cumsum(0.1 * speed[:-1])])
+    assert not interpolated(stamps_s, np.column_stack([x, 0 * x])).any()
