@@ -117,8 +117,8 @@ def warned(found: "Identification") -> "tuple[ParameterSet, str]":
         source = f"{terrains[name].source}; an average of parts that differ"
         terrains[name] = replace(terrains[name], source=source)
     last = (
-        f"These parameters are not recommended: {', '.join(mixed)} is an average of parts that "
-        "differ (see the warning above)."
+        f"These parameters are not recommended: averages of parts that differ ({', '.join(mixed)}; "
+        "see the warning above)."
     )
     return replace(identified, terrains=terrains), "\n".join(filter(None, (last, by_check)))
 

@@ -95,3 +95,8 @@ def distance(estimate, driven):
 def turned(estimate, driven):
     """Yaw of the last estimate less the truth."""
     return float(np.angle(np.exp(1j * (estimate.mean[2] - driven.poses[-1, 2]))))
+
+
+def events_of(estimates):
+    """All events, in the order of time."""
+    return [event for estimate in estimates for event in estimate.events]

@@ -16,10 +16,19 @@ from odometry.estimation.transition import (
     YAW,
 )
 from odometry.frames import Frame
-from tests.odometry.estimation.sensor_drives import drive, estimates_of, frames_of, weaving
+from odometry.geometry.angles import wrap
+from tests.odometry.estimation.sensor_drives import (
+    STEP_S,
+    drive,
+    estimates_of,
+    events_of,
+    frames_of,
+    weaving,
+)
 
 WIDTH_M, BIAS = 0.6, 0.02
 ON_THE_SPOT = (-0.3, 0.3)
+BEGIN = 400  # row of drives of 60 s: 40 s
 
 
 def belief():
@@ -125,3 +134,52 @@ def test_what_slip_taught_while_the_turn_died_away_is_put_back_too():
     )
     assert watch.belief[0][YAW] == pytest.approx(0.7)
     assert watch.belief[0][GYRO_BIAS] == BIAS
+
+
+def turning(t):
+    """Weaving, and from 40 s on a turn on the spot."""
+    return weaving(t) if t < BEGIN * STEP_S else ON_THE_SPOT
+
+
+@pytest.mark.parametrize("posed", [True, False])
+def test_frozen_treads_of_a_robot_that_stands_teach_nothing(posed):
+    """A log that repeats a turn for 15 s, while the gyroscope reads its bias and no more."""
+    driven = drive(60.0, speeds_of=turning)
+    speeds, rates = driven.speeds_m_s.copy(), driven.yaw_rates_rad_s + 0.01
+    rates[BEGIN + 1 :] = 0.01 + np.random.default_rng(3).normal(0, 0.003, len(rates) - BEGIN - 1)
+    speeds[:BEGIN] += np.random.default_rng(5).normal(0, 0.005, speeds[:BEGIN].shape)
+    speeds[550:] = 0.0
+    places = driven.poses.copy()
+    places[BEGIN + 1 :] = places[BEGIN]
+    estimates = estimates_of(
+        frames_of(driven, poses=places if posed else None, yaw_rates=rates, speeds=speeds)
+    )
+    frozen, *bias = events_of(estimates)
+    assert (frozen.kind, frozen.begin_s, frozen.end_s) == ("treads_frozen", 40.0, 55.0)
+    assert {event.kind for event in bias} <= {"gyroscope_bias"}
+    before, after = estimates[BEGIN], estimates[545]
+    np.testing.assert_allclose(after.mean[3:6], before.mean[3:6], atol=1e-4)
+    if posed:
+        assert abs(wrap(after.mean[2] - before.mean[2])) < 0.01
+    else:
+        assert after.gyro_bias_rad_s == pytest.approx(before.gyro_bias_rad_s, abs=1e-4)
+        lasted_s, off_rad_s = 14.5, 0.01 - before.gyro_bias_rad_s
+        assert wrap(after.mean[2] - before.mean[2]) == pytest.approx(lasted_s * off_rad_s, abs=0.1)
+        assert np.sqrt(after.covariance[0, 0]) > 5.0
+
+
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_a_turn_that_slips_much_is_no_frozen_tread(share):
+    """Treads that hold their speeds, as commands do, and turn the robot by a part of it."""
+    driven = drive(60.0, speeds_of=turning)
+    rates = np.where(driven.stamps_s > 40.0, share, 1.0) * driven.yaw_rates_rad_s
+    kinds = {event.kind for event in events_of(estimates_of(frames_of(driven, yaw_rates=rates)))}
+    assert "treads_frozen" not in kinds
+
+
+def test_a_tread_that_is_scaled_wrongly_on_straights_is_no_frozen_one():
+    """Held speeds of 0.8 and 1.2 m/s of a robot that goes straight on."""
+    driven = drive(60.0, speeds_of=lambda t: weaving(t) if t < 40.0 else (0.8, 1.2))
+    rates = np.where(driven.stamps_s > 40.0, 0.0, driven.yaw_rates_rad_s)
+    kinds = {event.kind for event in events_of(estimates_of(frames_of(driven, yaw_rates=rates)))}
+    assert "treads_frozen" not in kinds

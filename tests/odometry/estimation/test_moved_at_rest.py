@@ -8,6 +8,7 @@ from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     drive,
     estimates_of,
+    events_of,
     frames_of,
     noisy_poses,
     weaving,
@@ -33,10 +34,6 @@ def estimated(driven, rng, pushed_m, turned_rad=0.0):
     poses[:, 2] = np.angle(np.exp(1j * poses[:, 2]))
     rates = driven.yaw_rates_rad_s + np.gradient(turned_rad * share, STEP_S)
     return estimates_of(frames_of(driven, poses=poses, yaw_rates=rates)), poses
-
-
-def events_of(estimates):
-    return [event for estimate in estimates for event in estimate.events]
 
 
 def test_a_robot_that_stands_is_left_alone(driven, rng):

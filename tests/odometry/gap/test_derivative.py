@@ -54,13 +54,18 @@ def measured(make_scene, uncertain):
     return measured_of((scene,), uncertain, GapConfig())
 
 
+def started(uncertain, measured, effects):
+    """Values of the base, then those where a search of each effect starts."""
+    inputs, base = measured.scenes[0].inputs, uncertain.base
+    of_effects = [effect.starts(inputs, base)[0] for effect in effects]
+    return np.concatenate([uncertain.uncertain.values, *of_effects])
+
+
 @pytest.mark.parametrize("effects", HYPOTHESES.values(), ids=HYPOTHESES)
 def test_it_is_that_of_differences(uncertain, measured, effects):
     """Also next to a bound, and zero where a value is held."""
     hypothesis = Hypothesis(uncertain, measured, effects)
-    inputs, base = measured.scenes[0].inputs, uncertain.base
-    started = [effect.starts(inputs, base)[0] for effect in effects]
-    values = np.concatenate([uncertain.uncertain.values, *started])
+    values = started(uncertain, measured, effects)
     values += 0.3 * hypothesis.scales
     scales, rows = SMALL * hypothesis.scales, hypothesis.rows(values)
     low, high = (bound.copy() for bound in hypothesis.bounds)
@@ -78,9 +83,7 @@ def test_it_is_that_of_differences(uncertain, measured, effects):
 @pytest.mark.parametrize("effects", HYPOTHESES.values(), ids=HYPOTHESES)
 def test_rows_of_several_values_are_those_of_each(uncertain, measured, effects):
     hypothesis = Hypothesis(uncertain, measured, effects)
-    inputs, base = measured.scenes[0].inputs, uncertain.base
-    started = [effect.starts(inputs, base)[0] for effect in effects]
-    start = np.concatenate([uncertain.uncertain.values, *started])
+    start = started(uncertain, measured, effects)
     values = [start + share * hypothesis.scales for share in np.linspace(0.0, 0.4, 12)]
     one_by_one = np.stack([hypothesis.rows(each) for each in values])
     size = np.abs(one_by_one).max()

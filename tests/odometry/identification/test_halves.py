@@ -21,9 +21,7 @@ def recorded(synthetic, tmp_path_factory):
     folder = tmp_path_factory.mktemp("halves") / "run"
     twist = synthetic.icr_twist(synthetic.icrs)
     run = Run.read(synthetic.write(folder, odometry, np.arange(0, 79.5, 0.2), twist))
-    noise = rng.normal(size=(len(run.pose), 3)) * [0.01, 0.01, 0.005]
-    columns = {name: run.pose[name] + noise[:, k] for k, name in enumerate(("x", "y", "yaw"))}
-    return replace(run, pose=replace(run.pose, columns={**run.pose.columns, **columns}))
+    return synthetic.noisy(run, rng, 0.01, 0.005)
 
 
 def with_faster_second_half(run, factor):
