@@ -1,26 +1,34 @@
-"""Positions that scatter by more than the filter was told: single-point GNSS."""
+"""Noise of poses that the recording shows: scattered positions, and interpolated poses."""
 
 from dataclasses import replace
 
+import numpy as np
+
+from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.position_noise import position_noise_m
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run
+from odometry.windows.interpolated import poses_per_measured_one
+
+Noise = tuple[IcrEkfConfig, tuple[FilterEvent, ...]]
 
 
-def with_pose_noise(run: Run, config: IcrEkfConfig) -> tuple[IcrEkfConfig, tuple[FilterEvent, ...]]:
-    """The settings of a filter with the noise of the positions of a run.
+def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
+    """The settings of a filter with the noise of the poses of a run.
 
-    The noise counts where the positions show it for certain, and where it is more than
+    The noise of positions counts where they show it for certain, and where it is more than
     `position_sigma_m`: a filter that trusts them too far follows their noise, and learns ICRs
-    from it. Unless `config` is `causal` or does not watch its sensors.
+    from it. Where n poses were interpolated from one measurement, its variance is n times as
+    large: together they say what one measured pose says. Unless `config` is `causal` or does not
+    watch its sensors.
 
     Returns
     -------
     IcrEkfConfig
     tuple of FilterEvent
-        One where the setting was changed.
+        One for each change of a setting.
     """
     if run.pose is None or config.causal or not config.watch_sensors:
         return config, ()
@@ -28,8 +36,29 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> tuple[IcrEkfConfig, tuple
     used = evidence.poses_used
     if used is None:
         return config, ()
-    stamps_s = run.pose.stamps_s[used]
-    sigma_m = position_noise_m(evidence, stamps_s, run.pose.stack("x", "y")[used])
+    stamps_s, positions = run.pose.stamps_s[used], run.pose.stack("x", "y")[used]
+    config, scattered = _scattered(evidence, stamps_s, positions, config)
+    count = poses_per_measured_one(stamps_s, positions)
+    if count == 1:
+        return config, scattered
+    event = FilterEvent(
+        "interpolated_poses",
+        float(stamps_s[0]),
+        float(stamps_s[-1]),
+        f"{count:.0f} poses were interpolated from each measured one: together they count as one",
+        (count,),
+    )
+    return replace(
+        config,
+        position_sigma_m=config.position_sigma_m * np.sqrt(count),
+        yaw_sigma_rad=config.yaw_sigma_rad * np.sqrt(count),
+    ), (*scattered, event)
+
+
+def _scattered(
+    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, config: IcrEkfConfig
+) -> Noise:
+    sigma_m = position_noise_m(evidence, stamps_s, positions)
     if sigma_m is None or sigma_m <= config.position_sigma_m:
         return config, ()
     event = FilterEvent(

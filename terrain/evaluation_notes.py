@@ -36,6 +36,7 @@ HARMLESS = {  # kinds of events after which the estimate is still valid
     "gyroscope_held",
     "gyroscope_silence",
     "gyroscope_spike",
+    "interpolated_poses",
     "late_poses",
     "noisy_positions",
     "odometry_gap",

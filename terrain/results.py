@@ -1,7 +1,8 @@
 """The output folder of a run: tables, trajectories, numbers, what was learned, figures, page."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +104,7 @@ def write_results(
     write_csv_blocks(
         out / "estimate.csv",
         ("t", *STATE_NAMES, *(f"sigma_{name}" for name in STATE_NAMES)),
-        _estimate_blocks(replay),
+        _estimate_blocks(replay, result.uncertainty),
     )
     write_tum(out / "estimate.tum", replay.trajectory())
     names = ["odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum"]
@@ -140,13 +141,24 @@ def _odometer_blocks(
         yield poses | covariance_columns(covariances)
 
 
-def _estimate_blocks(replay: Replay) -> Iterator[dict[str, FloatArray]]:
-    for rows in blocks_of(len(replay.estimates)):
-        sigmas = replay.sigmas_of(EVERY, rows).T
+def _estimate_blocks(
+    replay: Replay, uncertainty: OdometerUncertainty
+) -> Iterator[dict[str, FloatArray]]:
+    """Estimates with standard deviations: of a pose without measured poses those of the odometer.
+
+    Errors of both are alike then, and the filter is too sure (`odometer_uncertainty`).
+    """
+    of_odometer: Iterable[FloatArray | None] = repeat(None)
+    if not uncertainty.poses:
+        of_odometer = uncertainty.covariance_blocks()
+    for rows, covariances in zip(blocks_of(len(replay.estimates)), of_odometer, strict=False):
+        sigmas = replay.sigmas_of(EVERY, rows)
+        if covariances is not None:
+            sigmas[:, :3] = np.sqrt(np.diagonal(covariances, axis1=1, axis2=2))
         yield (
             {"t": replay.numbers("stamp_s", rows)}
             | dict(zip(STATE_NAMES, replay.numbers("mean", rows).T, strict=True))
-            | {f"sigma_{name}": sigma for name, sigma in zip(STATE_NAMES, sigmas, strict=True)}
+            | {f"sigma_{name}": of for name, of in zip(STATE_NAMES, sigmas.T, strict=True)}
         )
 
 

@@ -4,11 +4,12 @@
 
 Needs TERRAIN_ODOMETRY_DATA. Of a robot and terrain that were recorded more than once, ICRs are
 identified on all but one recording, which is then replayed without its poses, in five parts of up
-to 150 s. NEES of x, y and yaw against its poses, by the covariance of odometer.csv, and by that of
-the filter alone; 3 is expected.
+to 150 s. NEES of x, y and yaw of odometer and estimate against its poses, by the covariance of
+odometer.csv, and by that of the filter alone; 3 is expected.
 """
 
 import argparse
+import itertools
 import re
 from dataclasses import replace
 
@@ -26,6 +27,12 @@ from tests.studies.estimation_recordings import motion, recordings
 
 DISTANCES_M = (5.0, 20.0, 50.0, 100.0)
 PARTS, LONGEST_S, SHORTEST_S = 5, 150.0, 40.0
+KINDS = (
+    "odometer, by odometer.csv",
+    "odometer, by the filter",
+    "estimate, by odometer.csv",
+    "estimate, by the filter",
+)
 REFERENCE = np.square([0.02, 0.02, 0.01])  # m^2, rad^2: of the poses
 
 
@@ -43,8 +50,8 @@ def main():
         print(f"{name:42} {words(rows)}", flush=True)
     for distance_m in DISTANCES_M:
         here = [row[2:] for row in found if row[1] == distance_m]
-        for kind, nees in zip(("odometer.csv", "filter alone"), np.transpose(here), strict=True):
-            print(f"{distance_m:5g} m, {len(nees):3} parts, {kind:12}: mean {nees.mean():.1f}, "
+        for kind, nees in zip(KINDS, np.transpose(here), strict=True):
+            print(f"{distance_m:5g} m, {len(nees):3} parts, {kind:27}: mean {nees.mean():.1f}, "
                   f"median {np.median(nees):.1f}")  # fmt: skip
 
 
@@ -67,7 +74,7 @@ def parts(run):
 
 
 def figures(bare, pose, known):
-    """Distance, NEES by the covariance of the odometer and by that of the filter alone."""
+    """Distance, and NEES of `KINDS`."""
     terrain = next(iter(known.terrains))
     result = run_odometry(bare, parameters=known.to_parameter_set(), vision=False, terrain=terrain)
     path, replay = path_of(result.replay), result.replay
@@ -80,10 +87,12 @@ def figures(bare, pose, known):
         result.uncertainty.covariances,
         replay.pose_covariances_of(slice(0, len(replay.stamps_s))),
     )
+    estimate = replay.numbers("mean", columns=slice(0, 3))
     for distance_m in DISTANCES_M:
         at = int(np.searchsorted(path.travel_m, distance_m))
         if at < len(true) and replay.stamps_s[at] <= pose.stamps_s[-1]:
-            yield distance_m, *(nees(path.poses, true, each, at) for each in covariances)
+            of = itertools.product((path.poses, estimate), covariances)
+            yield distance_m, *(nees(poses, true, by, at) for poses, by in of)
 
 
 def nees(poses, true, covariances, at):

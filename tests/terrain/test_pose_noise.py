@@ -1,6 +1,7 @@
-"""Noisy positions: what the check advises, and what a run does by itself."""
+"""Noise of poses: what the check advises, and what a run does by itself."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,3 +47,16 @@ def test_more_noise_that_is_stated_and_a_filter_that_does_not_look_stay_as_they_
 def test_smooth_positions_keep_the_usual_noise():
     smooth = drive(np.full(900, 0.7), np.full(900, 0.05), sigma_m=0.05)
     assert with_pose_noise(smooth, IcrEkfConfig()) == (IcrEkfConfig(), ())
+
+
+def test_poses_interpolated_from_one_count_as_one():
+    at_s = 0.05 * np.arange(4000)
+    every = drive(np.full(4000, 0.7), 0.3 * np.sin(at_s / 4), sigma_m=0.01)
+    t, fixes = every.pose.stamps_s, slice(None, None, 20)
+    columns = {name: np.interp(t, t[fixes], every.pose[name][fixes]) for name in ("x", "y", "yaw")}
+    lines = replace(every, pose=replace(every.pose, columns={"t": t, **columns}))
+    taken, (event,) = with_pose_noise(lines, IcrEkfConfig())
+    assert taken.position_sigma_m == pytest.approx(0.05 * np.sqrt(20), rel=0.03)
+    assert taken.yaw_sigma_rad == pytest.approx(0.05 * np.sqrt(20), rel=0.03)
+    assert event.kind == "interpolated_poses"
+    assert "20 poses" in event.text

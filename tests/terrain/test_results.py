@@ -149,6 +149,23 @@ def test_the_covariance_of_the_odometer_is_in_its_table_and_by_distance(curvy_ou
     assert content["nees"] == []
 
 
+def test_without_poses_the_estimate_is_no_surer_than_the_odometer(tmp_path, world):
+    run = world.drive_curves(tmp_path / "run", pose=False, stamps_s=np.linspace(0, 12, 241))
+    result = run_odometry(run)
+    write_results(result, tmp_path / "out")
+    names = ["sigma_x", "sigma_y", "sigma_yaw"]
+    odometer, estimate = (
+        numbers(tmp_path / "out" / f"{name}.csv", names) for name in ("odometer", "estimate")
+    )
+    np.testing.assert_array_equal(estimate, odometer)
+    assert (estimate[-1] > 2 * result.replay.sigmas[-1, :3]).all()
+
+
+def test_with_poses_deviations_of_the_estimate_are_those_of_the_filter(curvy_out, curvy_result):
+    found = numbers(curvy_out / "estimate.csv", ["sigma_x", "sigma_y", "sigma_yaw"])
+    np.testing.assert_allclose(found, curvy_result.replay.sigmas[:, :3], atol=1e-6)
+
+
 @pytest.mark.parametrize("poses", [True, False])
 def test_a_run_too_short_to_judge_is_still_strict_json(tmp_path, world, poses):
     run = world.drive_curves(tmp_path / "run", pose=poses, stamps_s=np.array([0.0, 0.05]))

@@ -9,7 +9,7 @@ from odometry.checks.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.identification.identify import identify
 from odometry.run import Run
-from odometry.windows.interpolated import interpolated, on_lines
+from odometry.windows.interpolated import interpolated, on_lines, poses_per_measured_one
 from odometry.windows.measured_poses import measured_poses, measured_positions
 
 EVERY = 20  # rows of 10 Hz
@@ -37,6 +37,31 @@ def resampled(run, fixes):
 @pytest.fixture(scope="module")
 def regular(recorded):
     return resampled(recorded, np.arange(0, len(recorded.pose), EVERY))
+
+
+def between_fixes(run, offset_s):
+    """Poses at 10 Hz on lines between poses measured every two seconds, at other times."""
+    t = run.pose.stamps_s
+    fixes_s = np.arange(t[0] + offset_s, t[-1], EVERY / 10)
+    grid_s = t[(t >= fixes_s[0]) & (t <= fixes_s[-1])]
+    columns = {
+        name: np.interp(grid_s, fixes_s, np.interp(fixes_s, t, run.pose[name]))
+        for name in ("x", "y", "yaw")
+    }
+    return replace(run, pose=replace(run.pose, columns={"t": grid_s, **columns}))
+
+
+@pytest.mark.parametrize("offset_s", [0.0, 0.03, 0.05, 0.08])
+def test_lines_are_recognised_wherever_the_measured_poses_lie(recorded, offset_s):
+    pose = between_fixes(recorded, offset_s).pose
+    positions = pose.stack("x", "y")
+    kept = ~interpolated(pose.stamps_s, positions)
+    assert kept.mean() < 0.3  # at rest no line is recognised
+    assert poses_per_measured_one(pose.stamps_s, positions) == pytest.approx(EVERY, abs=1)
+
+
+def test_measured_poses_are_one_each(recorded):
+    assert poses_per_measured_one(recorded.pose.stamps_s, recorded.pose.stack("x", "y")) == 1
 
 
 @pytest.mark.parametrize("measured", [measured_poses, measured_positions])
