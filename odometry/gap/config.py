@@ -4,6 +4,30 @@ from dataclasses import dataclass
 
 from odometry.config import require, require_positive
 
+POSITIVE = (
+    *("horizon_s", "part_s", "least_evidence", "least_excess", "near_bound", "sure", "surely"),
+    *("far_off", "equivalent_margin", "general_margin", "unexplained", "left_over"),
+    *("contact_spread", "turns_above", "turns_times", "hardly", "least_spacing_m", "uneven"),
+)
+SHARES = (
+    *("least_share", "least_rest", "first_share", "mostly_closed", "bursts_closed", "least_floor"),
+    *("events_told", "least_held_out", "least_of_rest", "least_of_all", "most_without"),
+    *("most_beaten", "least_better", "least_beside", "main_part", "one_sided", "no_farther"),
+    *("much_farther", "largest_growth", "beyond_first_order", "base_probability"),
+    *("least_odds", "sure_odds"),
+)
+FEWEST = {
+    "folds": 2,
+    "held_back": 2,
+    "knots": 2,
+    "most_poses": 2,
+    "even_knots": 2,
+    "tread_knots": 1,
+    "trimmed": 1,
+    "most_effects": 1,
+    "most_windows": 20,
+}
+
 
 @dataclass(frozen=True)
 class GapConfig:
@@ -245,44 +269,11 @@ class GapConfig:
     most_poses: int = 40
 
     def __post_init__(self) -> None:
-        require_positive(
-            self,
-            *("horizon_s", "part_s", "least_evidence", "least_excess", "near_bound"),
-            *("sure", "surely", "far_off"),
-            *("equivalent_margin", "general_margin", "unexplained", "left_over", "contact_spread"),
-            *("turns_above", "turns_times", "hardly", "least_spacing_m"),
-            "uneven",
-        )
-        require(self.folds >= 2, f"folds = {self.folds}, expected 2 or more")
-        require(self.held_back >= 2, f"held_back = {self.held_back}, expected 2 or more")
-        for name in (
-            "least_share",
-            "least_rest",
-            "first_share",
-            "mostly_closed",
-            "bursts_closed",
-            *(
-                "least_floor",
-                "events_told",
-                "least_held_out",
-                "least_of_rest",
-                "least_of_all",
-                "most_without",
-                "most_beaten",
-            ),
-            "least_better",
-            "least_beside",
-            *("main_part", "one_sided", "no_farther", "much_farther", "largest_growth"),
-            "beyond_first_order",
-            *("base_probability", "least_odds", "sure_odds"),
-        ):
+        require_positive(self, *POSITIVE)
+        for name in SHARES:
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
-        require(self.knots >= 2, f"knots = {self.knots}, expected 2 or more")
         require(min(self.nodes) >= 2, f"nodes = {self.nodes}, expected 2 or more each")
-        require(self.most_poses >= 2, f"most_poses = {self.most_poses}, expected 2 or more")
-        require(self.even_knots >= 2, f"even_knots = {self.even_knots}, expected 2 or more")
-        require(self.tread_knots >= 1, f"tread_knots = {self.tread_knots}, expected 1 or more")
-        require(self.trimmed >= 1, f"trimmed = {self.trimmed}, expected 1 or more")
-        require(self.most_effects >= 1, f"most_effects = {self.most_effects}, expected 1 or more")
-        require(self.most_windows >= 20, f"most_windows = {self.most_windows}, expected 20 or more")
+        for name, least in FEWEST.items():
+            count = getattr(self, name)
+            require(count >= least, f"{name} = {count}, expected {least} or more")

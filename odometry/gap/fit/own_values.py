@@ -10,7 +10,7 @@ from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added
 from odometry.effects.map_fault import OfEachRun
-from odometry.effects.residual import ResidualOfEachRun
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses

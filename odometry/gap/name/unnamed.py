@@ -10,7 +10,8 @@ from sklearn.metrics import roc_auc_score
 from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.history import History
-from odometry.effects.residual import ANGLES, OF_TREADS, Residual, ResidualOfEachRun, variables_of
+from odometry.effects.residual import ANGLES, OF_TREADS, Residual, variables_of
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.residual_of_place import ResidualOfPlace
 from odometry.effects.time_course import InBursts
 from odometry.gap.fit.bursts import InCourse, burst_effects

@@ -14,7 +14,7 @@ from odometry.effects.map_fault import OfEachRun
 from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.effects.reference_rounding import RoundedPositions
 from odometry.effects.reference_step import ReferenceStep
-from odometry.effects.residual import ResidualOfEachRun
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.terrain import SHIFTED, Terrain
 from odometry.effects.time_course import InBursts
 from odometry.effects.time_offset import TimeOffset

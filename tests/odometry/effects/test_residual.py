@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.effects.base import Effect
-from odometry.effects.residual import Residual, ResidualOfEachRun, basis_of, variables_of
+from odometry.effects.residual import Residual, basis_of, variables_of
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 

@@ -10,7 +10,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.history import History
 from odometry.effects.in_course import in_course
 from odometry.effects.reference_outliers import ReferenceOutliers
-from odometry.effects.residual import ResidualOfEachRun
+from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.effects.time_course import InBursts
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
