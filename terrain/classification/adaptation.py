@@ -93,6 +93,7 @@ def adapt(
     single = min(Counter(photo.label for photo in photos).values()) < 2
     used = _in_parts(patches) if single else patches
     scale = metres_per_pixel or stated_metres_per_pixel(Path(root)) or old.metres_per_pixel
+    before = old.trained_on_ or TrainedOn()
     found: dict[str, TerrainClassifier] = {}
     for name, beside, in_colour in (
         (ALONE, None, colour or old.colour_),
@@ -109,7 +110,7 @@ def adapt(
             used.labels,
             used.groups,
             beside=beside,
-            trained_on=_both(patches.trained_on, old.trained_on_ if beside else None),
+            trained_on=patches.trained_on | before if beside else patches.trained_on,
             processes=processes,
             progress=show_progress,
         )
@@ -166,9 +167,3 @@ def _in_parts(patches: LabelledPatches) -> LabelledPatches:
         groups.append(f"{group}, half {int(2 * seen[group] >= total[group]) + 1}")
         seen[group] += 1
     return replace(patches, groups=groups)
-
-
-def _both(new: TrainedOn, old: TrainedOn | None) -> TrainedOn:
-    if old is None:
-        return new
-    return TrainedOn(new.image_sums | old.image_sums, new.photo_ids | old.photo_ids)

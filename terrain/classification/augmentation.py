@@ -71,7 +71,7 @@ def load_copies(
     ImageError
         If a photograph cannot be read.
     """
-    copies = LabelledPatches([], [], [], [], [], [])
+    copies = LabelledPatches()
     for photo in photos:
         image = read_image(photo.path)
         content = image_sum(image)

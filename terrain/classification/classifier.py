@@ -178,7 +178,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         self._check_parameters()
         if copies is not None and (PRESETS[self.preset].as_published or not holds_images(X)):
             raise ConfigError(f"altered copies are for images and not for '{self.preset}'")
-        altered = copies or LabelledPatches([], [], [], [], [], [])
+        altered = copies or LabelledPatches()
         strange: list[ByteImage] = []
         if holds_images(X):
             labels, photos = _labels_and_groups(len(X), y, groups)

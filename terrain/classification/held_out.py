@@ -12,7 +12,6 @@ from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import LabelledPhoto
-from terrain.classification.trained_on import image_sum
 from terrain.errors import ImageError
 from terrain.images import read_image
 
@@ -132,7 +131,7 @@ class LabelledAnswer:
     photo : LabelledPhoto
     answer : Classification
     in_training : bool
-        Whether the classifier was trained on the same pixels.
+        Whether the classifier was trained on it, or on one that looks nearly the same.
     shares_photo_id : bool
         Whether it was trained on a photograph of the same photo_id.
     """
@@ -184,7 +183,7 @@ def answer_photos(
         except ImageError as error:
             unusable[photo.path] = str(error)
             continue
-        seen = trained_on is not None and image_sum(image) in trained_on.image_sums
+        seen = trained_on is not None and trained_on.holds(image)
         shares = trained_on is not None and photo.group in trained_on.photo_ids
         answers.append(LabelledAnswer(photo, answer, seen, shares))
     return answers, unusable

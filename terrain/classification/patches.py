@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.manifest import Manifest, read_manifest
 from terrain.classification.photo_faults import check_classes
+from terrain.classification.thumbnails import thumbnail_text
 from terrain.classification.trained_on import TrainedOn, image_sum
 from terrain.errors import PatchError
 from terrain.images import read_image
@@ -32,15 +33,16 @@ class LabelledPhoto:
 class LabelledPatches:
     """Patches of one size with their terrain names, groups and the photographs they are of.
 
-    `image_sums` are those of the photographs, by `image_sum`.
+    `image_sums` and `thumbnails` are those of the photographs, by `image_sum` and `thumbnail_text`.
     """
 
-    images: list[ByteImage]
-    labels: list[str]
-    groups: list[str]
-    photos: list[Path]
-    too_small: list[Path]
-    image_sums: list[str]
+    images: list[ByteImage] = field(default_factory=list)
+    labels: list[str] = field(default_factory=list)
+    groups: list[str] = field(default_factory=list)
+    photos: list[Path] = field(default_factory=list)
+    too_small: list[Path] = field(default_factory=list)
+    image_sums: list[str] = field(default_factory=list)
+    thumbnails: list[str] = field(default_factory=list)
 
     @property
     def trained_on(self) -> TrainedOn:
@@ -50,7 +52,7 @@ class LabelledPatches:
             for photo, group in zip(self.photos, self.groups, strict=True)
             if group != str(photo)
         }
-        return TrainedOn(frozenset(self.image_sums), frozenset(given))
+        return TrainedOn(frozenset(self.image_sums), frozenset(given), frozenset(self.thumbnails))
 
 
 def find_photos(root: Path) -> list[LabelledPhoto]:
@@ -137,7 +139,7 @@ def load_patches(
     ImageError
         If a photograph cannot be read.
     """
-    patches = LabelledPatches([], [], [], [], [], [])
+    patches = LabelledPatches()
     for photo in photos:
         image = read_image(photo.path)
         cut = cut_patches(image, size_px, max(size_px // 2, 1))
@@ -146,6 +148,7 @@ def load_patches(
         if not cut:
             patches.too_small.append(photo.path)
         patches.image_sums.append(image_sum(image))
+        patches.thumbnails.append(thumbnail_text(image))
         patches.images.extend(patch.copy() for patch in cut)  # so that no photograph is kept
         patches.labels.extend([photo.label] * len(cut))
         patches.groups.extend([photo.group] * len(cut))

@@ -8,12 +8,10 @@ import cv2
 import numpy as np
 
 from odometry.arrays import FloatArray
+from terrain.classification.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_half
 from terrain.errors import PatchError
 
 OTHER_SUFFIXES = (".webp", ".tif", ".tiff", ".bmp", ".gif", ".heic", ".avif", ".ppm", ".pgm")
-THUMBNAIL_PX = 24
-BLUR_PX = 2.0  # of the halved image: noise and compression do not count
-ALIKE = 0.97  # correlation of thumbnails; of 401 photographs of terrain 0.96 at most
 
 
 def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -> None:
@@ -93,13 +91,6 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
 
 
 def _thumbnail(photo: Path) -> FloatArray:
-    """Values (N,) of mean zero and length one; zero of an image that is flat or not read."""
+    """Zero of an image that is flat or not read."""
     image = cv2.imread(str(photo), cv2.IMREAD_REDUCED_GRAYSCALE_2)
-    if image is None:
-        return np.zeros(THUMBNAIL_PX**2)
-    blurred = cv2.GaussianBlur(image, (0, 0), BLUR_PX)
-    size = (THUMBNAIL_PX, THUMBNAIL_PX)
-    values = cv2.resize(blurred, size, interpolation=cv2.INTER_AREA).astype(np.float64).ravel()
-    values -= values.mean()
-    length = float(np.linalg.norm(values))
-    return values / length if length > THUMBNAIL_PX else np.zeros_like(values)
+    return np.zeros(THUMBNAIL_PX**2) if image is None else thumbnail_of_half(np.asarray(image))

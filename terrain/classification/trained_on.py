@@ -9,6 +9,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
+from terrain.classification.thumbnails import THUMBNAIL_PX, looks_like_one
 from terrain.errors import PatchError
 
 SUM_DIGITS = 16  # of SHA-256: chance matches among a million images are of the order of 1e-8
@@ -24,14 +25,29 @@ class TrainedOn:
         Of their pixels, by `image_sum`.
     photo_ids : frozenset of str
         Those that a manifest gave.
+    thumbnails : frozenset of str
+        By `thumbnail_text`; none of files before version 0.25.
     """
 
-    image_sums: frozenset[str]
+    image_sums: frozenset[str] = frozenset()
     photo_ids: frozenset[str] = frozenset()
+    thumbnails: frozenset[str] = frozenset()
+
+    def holds(self, image: ByteImage) -> bool:
+        """Whether an image is one of the photographs, with the same pixels or saved again."""
+        return image_sum(image) in self.image_sums or looks_like_one(image, self.thumbnails)
+
+    def __or__(self, other: "TrainedOn") -> "TrainedOn":
+        """The photographs of both."""
+        return TrainedOn(
+            self.image_sums | other.image_sums,
+            self.photo_ids | other.photo_ids,
+            self.thumbnails | other.thumbnails,
+        )
 
     def to_table(self) -> dict[str, list[str]]:
         """Values that JSON can hold, in order."""
-        return {"image_sums": sorted(self.image_sums), "photo_ids": sorted(self.photo_ids)}
+        return {name: sorted(texts) for name, texts in vars(self).items()}
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Self:
@@ -41,11 +57,15 @@ class TrainedOn:
         ------
         KeyError, TypeError
             If a list is missing or no list of texts.
+        ValueError
+            If a thumbnail is none.
         """
-        lists = [table[name] for name in ("image_sums", "photo_ids")]
+        lists = [table["image_sums"], table["photo_ids"], table.get("thumbnails", [])]
         for texts in lists:
             if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
                 raise TypeError(f"trained_on holds {texts!r}")
+        if any(len(bytes.fromhex(text)) != THUMBNAIL_PX**2 for text in lists[2]):
+            raise ValueError(f"trained_on holds thumbnails that are not {THUMBNAIL_PX} px wide")
         return cls(*map(frozenset, lists))
 
 

@@ -68,8 +68,9 @@ def _notes(
     trained = [each for each in answers if each.in_training]
     if trained:
         notes.append(
-            f"{model} was trained on {len(trained)} of {len(answers)} images, such as "
-            f"{trained[0].photo.path}: they do not count"
+            f"{model} was trained on {len(trained)} of {len(answers)} images (the same pixels, "
+            f"saved again, or frames of one scene), such as {trained[0].photo.path}: they do not "
+            "count"
         )
     shared = [each for each in answers if each.shares_photo_id and not each.in_training]
     if shared:

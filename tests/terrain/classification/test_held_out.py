@@ -11,6 +11,7 @@ from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import LabelledAnswer, answer_photos, held_out_score
 from terrain.classification.patches import LabelledPhoto, find_photos
+from terrain.classification.thumbnails import thumbnail_text
 from terrain.classification.trained_on import TrainedOn, image_sum
 from terrain.images import read_image
 
@@ -73,21 +74,39 @@ def test_images_of_the_training_set_are_known_under_any_name(training_patches, t
     assert model.trained_on_ == trained_on
     folder = tmp_path / "photos/gravel"
     folder.mkdir(parents=True)
-    changed = images[-1].copy()
-    changed[0, 0] ^= 1
-    for name, image in {"copy": images[-1], "changed": changed}.items():
+    turned = np.rot90(images[-1])
+    for name, image in {"copy": images[-1], "turned": turned}.items():
         assert cv2.imwrite(str(folder / f"{name}.png"), image)
     (folder / "broken.png").write_bytes(b"no image")
     (tmp_path / "photos/manifest.csv").write_text(
-        "path,photo_id\ngravel/copy.png,gravel 4\ngravel/changed.png,gravel 3\n"
+        "path,photo_id\ngravel/copy.png,gravel 4\ngravel/turned.png,gravel 3\n"
     )
     found, unusable = answer_photos(model, find_photos(tmp_path / "photos"))
-    assert [each.photo.path.stem for each in found] == ["changed", "copy"]
-    assert [each.in_training for each in found] == [False, True]
-    assert [each.shares_photo_id for each in found] == [True, False]
+    assert [each.photo.path.stem for each in found] == ["copy", "turned"]
+    assert [each.in_training for each in found] == [True, False]
+    assert [each.shares_photo_id for each in found] == [False, True]
     assert list(unusable) == [folder / "broken.png"]
     (said,) = model.classify([read_image(folder / "copy.png")])
-    assert found[1].answer == said
+    assert found[0].answer == said
+
+
+def test_training_photographs_that_were_saved_again_do_not_count_as_held_out(rng):
+    photos = [cv2.resize(rng.integers(0, 255, (40, 60), np.uint8), (600, 400)) for _ in range(6)]
+    trained_on = TrainedOn(thumbnails=frozenset(map(thumbnail_text, photos[:3])))
+    assert TrainedOn.from_table(trained_on.to_table()) == trained_on
+    for again in (
+        cv2.imdecode(cv2.imencode(".jpg", photos[0], [cv2.IMWRITE_JPEG_QUALITY, 40])[1], 0),
+        cv2.resize(photos[1], (420, 280), interpolation=cv2.INTER_AREA),
+        np.repeat(cv2.convertScaleAbs(photos[2], alpha=0.8, beta=20)[..., None], 3, axis=2),
+    ):
+        assert trained_on.holds(again)
+    assert not any(map(trained_on.holds, photos[3:]))
+    assert not TrainedOn(frozenset({"ab12"})).holds(photos[0])
+
+
+def test_flat_images_look_like_none():
+    flat = np.full((200, 200), 90, np.uint8)
+    assert not TrainedOn(thumbnails=frozenset({thumbnail_text(flat)})).holds(flat)
 
 
 def test_a_model_that_does_not_say_what_it_was_trained_on(training_patches, tmp_path):
@@ -98,8 +117,14 @@ def test_a_model_that_does_not_say_what_it_was_trained_on(training_patches, tmp_
 
 @pytest.mark.parametrize(
     "table",
-    [{}, {"image_sums": "abc", "photo_ids": []}, {"image_sums": [1], "photo_ids": []}],
+    [
+        {},
+        {"image_sums": "abc", "photo_ids": []},
+        {"image_sums": [1], "photo_ids": []},
+        {"image_sums": [], "photo_ids": [], "thumbnails": ["ab"]},
+        {"image_sums": [], "photo_ids": [], "thumbnails": ["x" * 1152]},
+    ],
 )
 def test_damaged_lists_are_refused(table):
-    with pytest.raises((KeyError, TypeError)):
+    with pytest.raises((KeyError, TypeError, ValueError)):
         TrainedOn.from_table(table)
