@@ -7,18 +7,12 @@ from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.filter_start import REINITIALISED
 from odometry.estimation.sensor_watch import ongoing
-from odometry.estimation.transition import GYRO_BIAS, YAW
-from odometry.geometry.angles import wrap
+from odometry.gyroscope_bias import bias_events
 from odometry.run import Run
 
 REFUSED_SHARE = 0.03  # of the poses; fewer are usual
 LAST_POSES = 20  # whose median distance is the error at the end
-BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second
-DRIFT_RAD_S = 0.02  # four standard deviations of a bias that counts as found
-KNOWN_BIAS_RAD_S = 0.005  # standard deviation from which on the bias is one that was found
-FOLLOWED_SIGMAS = 2.0  # of the bias, by which one that was followed may be off in the mean
 OFF_AT_END = "off_at_end"
-DRIFT_FOLLOWED = "gyroscope_drift_followed"
 
 
 def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
@@ -27,7 +21,7 @@ def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
     found = list(ongoing(last.watch, last.stamp_s)) if last.watch is not None else []
     found += _heading(last)
     found += _refused(replay)
-    found += _bias(replay)
+    found += bias_events(replay)
     found += _off_at_end(run, replay)
     return tuple(found)
 
@@ -54,50 +48,6 @@ def _refused(replay: Replay) -> list[FilterEvent]:
     begin_s, end_s = replay.stamps_s[[0, -1]].tolist()
     text = f"{refused} of {measured} poses were refused as outliers"
     return [FilterEvent("refused_poses", begin_s, end_s, text)]
-
-
-def _bias(replay: Replay) -> list[FilterEvent]:
-    """A bias of the gyroscope that is clearly none of zero, and one that drifts."""
-    of = slice(GYRO_BIAS, GYRO_BIAS + 1)
-    biases = replay.numbers("mean", columns=of)[:, 0]
-    sigmas = replay.sigmas_of(of)[:, 0]
-    known = np.flatnonzero((sigmas > 0) & (sigmas < KNOWN_BIAS_RAD_S))
-    if not len(known):
-        return []
-    bias, sigma = float(biases[-1]), float(sigmas[-1])
-    least, most = float(biases[known].min()), float(biases[known].max())
-    begin_s, end_s = float(replay.stamps_s[known[0]]), float(replay.stamps_s[-1])
-    if most - least > DRIFT_RAD_S:
-        text = f"the bias of the gyroscope drifted between {least:.4f} and {most:.4f} rad/s"
-        off, stated = bias_error(replay, known[0]), float(sigmas[known].mean())
-        if abs(off) <= FOLLOWED_SIGMAS * stated:
-            return [FilterEvent(DRIFT_FOLLOWED, begin_s, end_s, f"{text}: the filter followed it")]
-        text += (
-            f", the estimated one was off by {abs(off):.4f} rad/s in the mean, where the filter "
-            f"states {stated:.4f}: it was not followed"
-        )
-        return [FilterEvent("gyroscope_drift", begin_s, end_s, text)]
-    if abs(bias) > max(BIAS_RAD_S, BIAS_SIGMAS * sigma):
-        text = f"the gyroscope has a bias of {bias:.4f} +- {sigma:.4f} rad/s: it was removed"
-        return [FilterEvent("gyroscope_bias", begin_s, end_s, text)]
-    return []
-
-
-def bias_error(replay: Replay, first: int) -> float:
-    """Mean error of the estimated bias since an estimate [rad/s].
-
-    How much more the gyroscope less that bias turned than the estimate, which follows the poses.
-    """
-    steps_s = np.diff(replay.stamps_s[first:])
-    yaws, biases = (
-        replay.numbers("mean", slice(first, None), slice(state, state + 1))[:, 0]
-        for state in (YAW, GYRO_BIAS)
-    )
-    rates = replay.believed_yaw_rates_rad_s[first:]
-    known = np.isfinite(rates) & (steps_s > 0)
-    off = (rates - biases[:-1]) * steps_s - wrap(np.diff(yaws))
-    duration_s = float(steps_s[known].sum())
-    return float(off[known].sum()) / duration_s if duration_s > 0 else 0.0
 
 
 def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:

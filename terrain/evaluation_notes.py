@@ -13,7 +13,8 @@ from odometry.estimation.transition import GYRO_BIAS
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, Score
-from odometry.run_end import DRIFT_FOLLOWED, OFF_AT_END
+from odometry.gyroscope_bias import DRIFT_FOLLOWED
+from odometry.run_end import OFF_AT_END
 from terrain.evaluated import SecondReplay
 
 NEEDS_NO_FIT = {

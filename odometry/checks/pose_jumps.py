@@ -14,6 +14,7 @@ from odometry.checks.steps import (
     JUMP_TIMES,
     NEAR_S,
     SHOWN,
+    jumps_by_itself,
     moments,
     rate_of,
     reckoned,
@@ -103,7 +104,7 @@ def _findings(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -
     lost = [i for i in peaks if i not in stood and _lost_treads(evidence, of.stamps_s[i])]
     peaks = [i for i in peaks if i not in stood and i not in lost]
     lost = [i for i in lost if of.size_m[i] > STANDING_TIMES * of.noise_m]
-    sudden = [i for i in peaks if _sudden(of, i)]
+    sudden = [i for i in peaks if _sudden(of, i) and _by_itself(of, i)]
     if stood:
         yield _slip_episodes(evidence, of.stamps_s[stood], float(of.size_m[stood[0]]))
     if lost:
@@ -128,8 +129,8 @@ def _noise_m(positions_m: FloatArray, standing_m: FloatArray) -> float:
 def _drift(evidence: Evidence, at_s: float, farthest_m: float, usual_m: float) -> Finding:
     return disagreement(
         f"poses part by {farthest_m:.2g} m from what treads and yaw say within {2 * FAR_S:g} s at "
-        f"{evidence.run_time_s(at_s):.0f} s, not at once (usual: {usual_m:.2g} m), as by "
-        "reflected signals (multipath) or slip"
+        f"{evidence.run_time_s(at_s):.0f} s, and do not jump themselves (usual: {usual_m:.2g} m), "
+        "as by stamps that are off, treads at fault, reflected signals (multipath) or slip"
     )
 
 
@@ -171,7 +172,8 @@ def _pose_jumps(
         Level.WARNING,
         f"poses jump against what treads and yaw say, and stay, {counted(len(at_s), 'time')}: "
         f"{places}{' ...' if len(at_s) > SHOWN else ''} (usual: {usual_m:.2g} m)",
-        "Poses jump: the reference was relocalised, or its map or fix changed",
+        "Poses jump: the reference was relocalised, its map or fix changed, or it held its pose or "
+        "its clock for a while",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
         moments(evidence, at_s),
     )
@@ -204,6 +206,10 @@ def _sudden(of: Steps, at: int) -> bool:
     ends = (np.searchsorted(of.stamps_s, of.stamps_s[rows] + s) for s in (-short_s, short_s))
     before, after = (np.clip(end, first, last) for end in ends)
     return float(np.hypot(*(of.off[after] - of.off[before]).T).max()) > SUDDEN * whole
+
+
+def _by_itself(of: Steps, at: int) -> bool:
+    return jumps_by_itself(of.stamps_s, of.positions, at, float(of.size_m[at]))
 
 
 def _around(of: Steps, at: int, reach_s: float) -> tuple[int, int]:

@@ -1,20 +1,17 @@
-"""What is odd about single stretches and samples of the measured poses, steps of yaw included."""
+"""What is odd about single stretches and samples of the measured poses."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import IntArray
 from odometry.checks.course import OFF_RAD
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.pose_jumps import jumps
 from odometry.checks.relation import pieces, relation
-from odometry.checks.steps import FAR_S, JITTER_S, JUMP_TIMES, SHOWN, moments, rate_of, step_sizes
 from odometry.checks.undo import moved
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import runs_of, within
+from odometry.checks.yaw_jumps import yaw_jumps
 
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
@@ -130,75 +127,3 @@ def pose_outages(evidence: Evidence) -> Iterator[Finding]:
         "Nothing to do: windows do not cross it, and the filter goes on by the odometer",
         tuple(spans),
     )
-
-
-LEAST_YAW_JUMP_RAD = np.radians(25)
-HALF_TURN_RAD = np.radians(30)  # a jump that is off by less is half a turn
-WAY_M = 0.05  # from a jump on, of the treads' travel that says which way the robot drives
-AS_COURSE = (
-    "Yaw is the course over ground, which turns round where the robot reverses: not the heading "
-    "(a receiver without a second antenna or a compass)",
-    "Leave yaw empty: positions alone are used then",
-)
-
-
-def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
-    """Steps of the measured yaw against the gyroscope."""
-    pose = evidence.run.pose
-    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
-        return
-    by_gyroscope = evidence.pose_turn_by_gyroscope
-    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
-        return
-    of_rate_s = evidence.yaw_rate[0]
-    rows = rows[within(pose.stamps_s[rows], np.array([[of_rate_s[0], of_rate_s[-1]]]))]
-    stamps_s = pose.stamps_s[rows]
-    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
-    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
-    known = np.isfinite(yaw) & np.isfinite(heading)
-    stamps_s, off = stamps_s[known], np.unwrap((yaw - heading)[known])
-    step = step_sizes(stamps_s, np.stack([off, np.zeros_like(off)], axis=-1))
-    measured = np.isfinite(step)
-    if evidence.gyroscope_file == "odometry.csv":
-        gaps_s = odometry_gaps(evidence.run).spans_s
-        measured &= ~within(stamps_s, gaps_s + np.array([-FAR_S, FAR_S]))
-    if measured.sum() < 20:
-        return
-    usual = 1.4826 * float(np.median(step[measured]))
-    rate = np.abs(rate_of(heading[known], stamps_s))
-    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_YAW_JUMP_RAD + JITTER_S * rate))
-    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
-    if not peaks:
-        return
-    turned = [i for i in peaks if abs(step[i] - np.pi) < HALF_TURN_RAD]
-    reverses = sum(_reverses(evidence, float(stamps_s[i])) for i in turned)
-    yield Finding(
-        "yaw_jumps",
-        Level.WARNING,
-        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(peaks), 'time')}: "
-        + ", ".join(
-            f"{np.degrees(step[i]):.0f} degrees at {evidence.run_time_s(stamps_s[i]):.1f} s"
-            for i in peaks[:SHOWN]
-        ),
-        *(
-            AS_COURSE
-            if 2 * reverses > len(peaks)
-            else (
-                "Yaw jumps: the heading of the reference was corrected or lost (magnetometer, "
-                "antennas)",
-                "Number the stretches between jumps in a column `window`, or cut with --from and "
-                "--to",
-            )
-        ),
-        moments(evidence, stamps_s[peaks]),
-    )
-
-
-def _reverses(evidence: Evidence, stamp_s: float) -> bool:
-    """Whether the robot drives the other way after a stamp than it did before, with any pause."""
-    of, here = evidence.integrals, int(np.searchsorted(evidence.stamps_s, stamp_s))
-    travel_m = (of.left_m(evidence.stamps_s) + of.right_m(evidence.stamps_s)) / 2
-    ahead_m = travel_m - travel_m[min(here, len(travel_m) - 1)]
-    far = np.abs(ahead_m) > WAY_M
-    before, after = np.flatnonzero(far[:here]), np.flatnonzero(far[here:]) + here
-    return bool(len(before) and len(after) and ahead_m[before[-1]] * ahead_m[after[0]] > 0)

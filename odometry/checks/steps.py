@@ -11,6 +11,8 @@ JITTER_S = 0.4  # by which poses that came in bursts were late
 SHOWN = 3  # jumps that are named
 BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
+AT_ONCE = 0.5  # share of a jump that one or two steps of the poses themselves hold
+BESIDE = 3  # steps, whose median is the rate before and after
 
 
 def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
@@ -79,3 +81,39 @@ def rate_of(values: FloatArray, stamps_s: FloatArray) -> FloatArray:
 def moments(evidence: Evidence, at_s: FloatArray) -> tuple[tuple[float, float], ...]:
     """Spans without length, in run time [s], at stamps (K,)."""
     return tuple((evidence.run_time_s(stamp_s),) * 2 for stamp_s in at_s)
+
+
+def jumps_by_itself(stamps_s: FloatArray, values: FloatArray, at: int, size: float) -> bool:
+    """Whether a series jumps near a row, and not what it is compared with.
+
+    Two steps in a row change it by half of the size, beyond what it changes by at the rates just
+    before and after. A robot that starts, stops or turns round has rates between these.
+
+    Parameters
+    ----------
+    stamps_s : (M,)
+    values : (M, D)
+    at : int
+        Where medians of both sides differ most: the jump is no farther away than their windows.
+    size : float
+        Of the step against the other sensor.
+    """
+    reach_s = max(FAR_S, 1.5 * float(np.median(np.diff(stamps_s))))
+    first, last = np.searchsorted(stamps_s, stamps_s[at] + np.array([-reach_s, reach_s]))
+    rates = np.diff(values, axis=0) / np.diff(stamps_s)[:, None]
+    for row in range(max(first - 2, BESIDE), min(last, len(rates) - BESIDE - 1)):
+        before, after = rates[row - BESIDE : row], rates[row + 2 : row + 2 + BESIDE]
+        lasts_s = float(stamps_s[row + 2] - stamps_s[row])
+        rate = (values[row + 2] - values[row]) / lasts_s
+        beyond = _beyond(rate, np.median(before, axis=0), np.median(after, axis=0))
+        if beyond * lasts_s > AT_ONCE * size:
+            return True
+    return False
+
+
+def _beyond(rate: FloatArray, before: FloatArray, after: FloatArray) -> float:
+    """By how much a rate (D,) differs from any between two (D,)."""
+    between, off = after - before, rate - before
+    squared = max(float(between @ between), np.finfo(float).tiny)
+    share = np.clip(off @ between / squared, 0.0, 1.0)
+    return float(np.linalg.norm(off - share * between))

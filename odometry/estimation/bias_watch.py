@@ -140,7 +140,7 @@ def changed(belief: Gaussian, bias_rad_s: tuple[float, float]) -> Gaussian:
 def change_event(estimated_rad_s: float, bias_rad_s: float, stamp_s: float) -> FilterEvent:
     """The event of a bias that is another."""
     text = (
-        f"the bias of the gyroscope changed from {estimated_rad_s:.4f} to {bias_rad_s:.4f} rad/s, "
-        "by the poses: the filter took that one"
+        f"the estimated bias of the gyroscope was corrected from {estimated_rad_s:.4f} to "
+        f"{bias_rad_s:.4f} rad/s, by the poses"
     )
     return FilterEvent("gyroscope_bias_changed", stamp_s, stamp_s, text, (bias_rad_s,))

@@ -1,15 +1,18 @@
 """What is said of a filter at the end of its run."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from odometry.estimation.config import IcrEkfConfig
+from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.estimation.kept_estimates import EVERY
 from odometry.estimation.transition import GYRO_BIAS
+from odometry.gyroscope_bias import bias_error, bias_events
 from odometry.pipeline import ConstantTerrain, replay
-from odometry.run_end import bias_error
 from tests.odometry.test_pose_delay import run_of, table
 
 
@@ -64,8 +67,77 @@ def test_a_drift_that_the_filter_follows_is_a_note():
     rates = columns["gyro_z"] + 0.06 * t / t[-1]
     drifting = replace(run, odometry=table("odometry.csv", **{**columns, "gyro_z": rates}))
     found = kinds(drifting, bias_noise=1e-3, gyro_noise=0.005)
-    assert "followed it" in found["gyroscope_drift_followed"].text
+    assert "followed a drift" in found["gyroscope_drift_followed"].text
     assert "gyroscope_drift" not in found
+
+
+def resting(run, since_s, lasts_s):
+    """The run with a rest put in."""
+
+    def later(table_of, stands):
+        t = table_of.stamps_s
+        of_run_s = np.minimum(t, np.maximum(since_s, t - lasts_s))
+        columns = {n: np.interp(of_run_s, t, c) for n, c in table_of.columns.items() if n != "t"}
+        still = (t >= since_s) & (t < since_s + lasts_s) & stands
+        return {"t": t} | {name: np.where(still, 0.0, column) for name, column in columns.items()}
+
+    return replace(
+        run,
+        odometry=table("odometry.csv", **later(run.odometry, True)),
+        pose=table("pose.csv", **later(run.pose, False)),
+    )
+
+
+def test_a_yaw_that_drifts_is_no_bias_of_a_gyroscope_that_reads_none_at_rest():
+    run = resting(run_of(0.0), 60.0, 6.0)
+    assert not {"gyroscope_bias", "gyroscope_contradicted"} & set(kinds(run))
+    t = run.pose.stamps_s
+    found = kinds(posed(run, yaw=run.pose["yaw"] + 0.02 * t))
+    assert "gyroscope_bias" not in found
+    assert "at rest it reads 0.0000 rad/s" in found["gyroscope_contradicted"].text
+
+
+def test_a_bias_that_the_gyroscope_shows_at_rest_is_one():
+    run = resting(run_of(0.0), 60.0, 6.0)
+    found = kinds(replace(run, odometry=table("odometry.csv", **biased(run, 0.016))))
+    assert found["gyroscope_bias"].text.endswith("rad/s: it was removed")
+    assert (
+        "no rest shows it"
+        in kinds(
+            replace(run_of(0.0), odometry=table("odometry.csv", **biased(run_of(0.0), 0.016)))
+        )["gyroscope_bias"].text
+    )
+
+
+@pytest.mark.parametrize(
+    ("corrected", "kind"),
+    [
+        ([0.001, 0.002, 0.0], "treads_contradicted"),
+        ([0.001, 0.002], "gyroscope_drift_followed"),
+        ([0.001, 0.012, 0.03], "gyroscope_drift_followed"),
+    ],
+)
+def test_a_bias_that_poses_bring_back_again_and_again_is_none_of_the_gyroscope(corrected, kind):
+    biases = np.tile(np.linspace(0.0, 0.03, 50), 4)
+    steps = len(biases) - 1
+    kept = {
+        "mean": np.tile(biases[:, None], (1, 9)),
+        "tread_speeds_m_s": np.ones((len(biases), 2)),
+    }
+    found = SimpleNamespace(
+        stamps_s=np.arange(len(biases)) * 0.1,
+        events=[FilterEvent("gyroscope_bias_changed", 1, 1, "", (rad_s,)) for rad_s in corrected],
+        numbers=lambda name, rows=EVERY, columns=EVERY: kept[name][rows, columns],
+        sigmas_of=lambda _: np.full((len(biases), 1), 0.001),
+        yaw_rates_rad_s=np.zeros(steps),
+        believed_yaw_rates_rad_s=np.full(steps, np.nan),
+    )
+    (event,) = bias_events(found)
+    assert event.kind == kind
+
+
+def biased(run, rad_s):
+    return {**run.odometry.columns, "gyro_z": run.odometry["gyro_z"] + rad_s}
 
 
 def test_outliers_are_counted(rng):
