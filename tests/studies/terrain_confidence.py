@@ -8,7 +8,8 @@ altered, the other folder's, whose terrains the model may lack, and things (`ter
 Printed for each: the share with the note of one image, of squares and of whole photographs; the
 share with a name; then by the votes alone and as `classify` answers: the share with a name and a
 confidence of 0.9 or more, how many of these are wrong, and the expected calibration error of the
-names. Bands, motion, a third of the scale and bleaching are no alteration of training as such.
+names; last that of exact probabilities by chance, squares of a photograph right or wrong together.
+Bands, motion, a third of the scale and bleaching are no alteration of training as such.
 """
 
 import argparse
@@ -22,10 +23,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
-from terrain.classification.calibration import reliability
+from terrain.classification.calibration import reliability, reliability_by_chance
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import LabelledPhoto, cut_patches, find_photos, load_patches
 from terrain.classification.validation import grouped_folds
@@ -75,17 +76,22 @@ ALTERED: dict[str, Change] = {
 
 @dataclass
 class Answered:
-    """Answers by the votes and as `classify` gives them, true terrains, and notes."""
+    """Answers by the votes and as `classify` gives them, true terrains, photographs, and notes."""
 
     votes: list[Classification]
     answers: list[Classification]
     true: list[str]
+    groups: list[str]
     square_notes: list[bool]
     photo_notes: list[bool]
 
     @classmethod
     def by(
-        cls, model: TerrainClassifier, squares: Sequence[ByteImage], true: Sequence[str]
+        cls,
+        model: TerrainClassifier,
+        squares: Sequence[ByteImage],
+        true: Sequence[str],
+        groups: Sequence[str],
     ) -> "Answered":
         """Of squares, each an image of its own."""
         by_votes = copy(model)
@@ -93,7 +99,7 @@ class Answered:
         before = [model.classify_features(model.patch_features(square)) for square in squares]
         votes, answers = (list(map(of.checked, squares, before)) for of in (by_votes, model))
         notes = [has_note(model, square) for square in squares]
-        return cls(votes, answers, list(true), notes, [])
+        return cls(votes, answers, list(true), list(groups), notes, [])
 
     def line(self) -> str:
         """The shares."""
@@ -106,7 +112,10 @@ class Answered:
             confidence = np.array([of.confidence for of in answers])
             sure = named & (confidence >= SURE)
             cells += [_share(sure), _share(~right[sure])]
-            cells.append(f"{_calibration_error(right[named], confidence[named]):.3f}")
+            table = np.column_stack([confidence, np.zeros(len(named))])[named]
+            cells.append(f"{reliability(np.where(right[named], 0, 1), table).expected_error:.3f}")
+        chance = reliability_by_chance(table, np.array(self.groups)[named]).expected_error
+        cells.append(f"(chance {chance:.3f})")
         return " ".join(cells)
 
 
@@ -125,12 +134,6 @@ def _share(of: AnyArray | Sequence[bool]) -> str:
     return f"{np.mean(of):.3f}" if len(of) else "    -"
 
 
-def _calibration_error(right: AnyArray, confidence: FloatArray) -> float:
-    """That of answers, right or not, in tenths."""
-    codes: IntArray = np.where(right, 0, 1)
-    return reliability(codes, np.column_stack([confidence, np.zeros(len(codes))])).expected_error
-
-
 def squares_of(image: ByteImage) -> list[ByteImage]:
     """Up to four, spread evenly."""
     found = cut_patches(image, SIZE_PX)
@@ -142,16 +145,17 @@ def of_photos(
     model: TerrainClassifier, photos: Sequence[LabelledPhoto], change: Change
 ) -> Answered:
     """Of squares of photographs, changed."""
-    squares, true, notes = [], [], []
+    squares, true, groups, notes = [], [], [], []
     for photo in photos:
         read = read_image(photo.path)
         image = change(read if read.ndim == 3 else np.repeat(read[..., None], 3, axis=2))
         cut = squares_of(image)
         squares += cut
         true += [photo.label] * len(cut)
+        groups += [photo.group] * len(cut)
         if cut:
             notes.append(has_note(model, image))
-    answered = Answered.by(model, squares, true)
+    answered = Answered.by(model, squares, true, groups)
     answered.photo_notes = notes
     return answered
 
@@ -165,7 +169,9 @@ def shown_to(
     for name, things in (("development", development), ("test", reserved)):
         of = [squares[::3][:SQUARES] for squares in things(SIZE_PX).values()]
         every = [square for squares in of for square in squares]
-        found[f"things of {name}"] = Answered.by(model, every, ["no terrain"] * len(every))
+        found[f"things of {name}"] = Answered.by(
+            model, every, ["no terrain"] * len(every), list(map(str, range(len(every))))
+        )
     return found
 
 
