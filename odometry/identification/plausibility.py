@@ -61,6 +61,7 @@ FEW_FREEDOM = 5.0
 NEAR_BOUND = 1e-2
 ABSURD = 0.1  # of the least usual gain: a robot that hardly moves shows no parameters
 FAR_RESIDUALS = 3.0  # times the poses' stated noise
+MOSTLY_OTHER = 5.0  # times it, from which most of the error is of something else
 CAUSES = (
     "tread speeds in another unit (rad/s, RPM, mm/s), swapped or of the wrong sign; positions in "
     "degrees or kilometres; yaw in degrees or reversed; a wrong track_width; poses much worse than "
@@ -117,6 +118,7 @@ def turns_outside(fit: Fit, robot: Robot) -> str:
     return (
         f"x_icr = {x_m:.4g} m: the robot would turn about a point {point}. The reference is "
         f"probably {abs(x_m):.2g} m {side} the robot's origin: state it in [sensors] pose"
+        + ("; or its positions are late, or late along one axis" * (fit.scale > FAR_RESIDUALS))
     )
 
 
@@ -150,6 +152,12 @@ def notes(fit: Fit) -> tuple[str, ...]:
         "can be stated"
         for name in fit.by_trial
     ]
+    if fit.scale > MOSTLY_OTHER:
+        found.append(
+            f"the residuals are {fit.scale:.0f} times {fit.compared_with}: most of the error is "
+            "not in this model (slip that comes and goes, an effect that it lacks, or a fault of "
+            "the recording); `check` and `gap` say more"
+        )
     few = float(fit.freedom.min(initial=np.inf))
     if few < FEW_FREEDOM:
         found.append(

@@ -94,3 +94,10 @@ def test_few_degrees_of_freedom_are_said(winding):
     windows = WindowConfig(horizon_m=20.0)
     said = notes(identified(winding, config=windows).terrains["gravel"].fit)
     assert any("degrees of freedom make intervals" in words for words in said)
+
+
+def test_residuals_far_beyond_the_noise_are_said(winding):
+    fit = identified(winding).terrains["gravel"].fit
+    assert not any("most of the error" in words for words in notes(replace(fit, scale=4.9)))
+    (said,) = notes(replace(fit, scale=14.2))
+    assert said.startswith("the residuals are 14 times the poses' stated noise: most of the error")

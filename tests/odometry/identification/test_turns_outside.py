@@ -19,7 +19,7 @@ from odometry.run import Robot
     ],
 )
 def test_icrs_lie_between_the_ends_of_a_robot(x_m, length_m, words):
-    fit = SimpleNamespace(values={"x_icr": x_m})
+    fit = SimpleNamespace(values={"x_icr": x_m}, scale=1.0)
     said = turns_outside(fit, Robot(track_width=0.6, length=length_m))
     assert words in said
     assert bool(said) == bool(words)
@@ -27,3 +27,8 @@ def test_icrs_lie_between_the_ends_of_a_robot(x_m, length_m, words):
 
 def test_a_model_without_the_parameter_says_nothing():
     assert turns_outside(SimpleNamespace(values={"alpha": 1.0}), Robot(0.6)) == ""
+
+
+def test_where_residuals_are_far_beyond_the_noise_late_positions_are_another_cause():
+    fit = SimpleNamespace(values={"x_icr": -1.1}, scale=10.0)
+    assert turns_outside(fit, Robot(0.6)).endswith("positions are late, or late along one axis")
