@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW
+from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW, REINITIALISED
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
@@ -64,7 +64,20 @@ def remarks(
     """
     if any(event.kind == OFF_AT_END for event in events):
         off_m = {name: off for name, off in off_m.items() if name != "estimate"}
-    return [*simple_is_better(scores), *worse_at_the_end(off_m)] if scores else []
+    if not scores:
+        return []
+    return [*simple_is_better(scores), *worse_at_the_end(off_m), *contradicted(events)]
+
+
+def contradicted(events: Sequence[FilterEvent]) -> list[str]:
+    """A sentence where the filter started again more than once."""
+    again = sum(event.kind == REINITIALISED for event in events)
+    if again < 2:
+        return []
+    return [
+        f"The filter started again {again} times: poses and odometry contradict each other, and "
+        "errors against the poses do not say which is at fault. Run check."
+    ]
 
 
 def evaluated_with(second: SecondReplay) -> str:

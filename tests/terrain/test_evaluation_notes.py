@@ -52,3 +52,11 @@ def test_an_end_that_the_filter_noticed_is_not_reported_twice():
     assert len(remarks(errors, off_m)) == 2
     (left,) = remarks(errors, off_m, (FilterEvent("off_at_end", 0.0, 9.0, "do not trust it"),))
     assert left.startswith("The odometer ends farther off")
+
+
+@pytest.mark.parametrize(("times", "said"), [(0, 0), (1, 0), (2, 1), (5, 1)])
+def test_poses_and_odometry_that_contradict_each_other_are_said(times, said):
+    again = (FilterEvent("reinitialised", 9.0, 9.0, "it started again there"),) * times
+    sentences = remarks(scores(odometer=0.04, differential_drive=0.3), {}, again)
+    assert len(sentences) == said
+    assert all(f"started again {times} times" in sentence for sentence in sentences)
