@@ -2,13 +2,13 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 FILES = sorted(file for room in ("odometry", "terrain") for file in (ROOT / room).rglob("*.py"))
-TREES = {file.relative_to(ROOT).as_posix(): ast.parse(file.read_text("utf-8")) for file in FILES}
 CODE = {
     "pickle",
     "cPickle",
@@ -45,16 +45,22 @@ LINES = {
 }
 
 
+@cache
+def trees() -> dict[str, ast.Module]:
+    """The source of each file, parsed."""
+    return {file.relative_to(ROOT).as_posix(): ast.parse(file.read_text("utf-8")) for file in FILES}
+
+
 def nodes(kind: type[ast.AST]) -> Iterator[tuple[str, ast.AST]]:
-    for file, tree in TREES.items():
+    for file, tree in trees().items():
         yield from ((file, node) for node in ast.walk(tree) if isinstance(node, kind))
 
 
-def calls() -> Iterator[tuple[str, str, str, ast.Call]]:
+@cache
+def calls() -> list[tuple[str, str, str, ast.Call]]:
     """File, what is called, its last name, and the call."""
-    for file, node in nodes(ast.Call):
-        called = ast.unparse(node.func)
-        yield file, called, called.rpartition(".")[2], node
+    named = [(file, ast.unparse(node.func), node) for file, node in nodes(ast.Call)]
+    return [(file, called, called.rpartition(".")[2], node) for file, called, node in named]
 
 
 def modes_of(call: ast.Call) -> list[str]:
@@ -132,4 +138,4 @@ def test_the_program_that_writes_lines_is_known():
 
 @pytest.mark.parametrize("file", ["odometry/io/csv_table.py", "terrain/batch/batch.py"])
 def test_writers_of_texts_quote(file):
-    assert "quoted_text(" in ast.unparse(TREES[file])
+    assert "quoted_text(" in ast.unparse(trees()[file])
