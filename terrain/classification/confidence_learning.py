@@ -1,6 +1,6 @@
 """What the confidence of answers is learned from: images whose photograph was held out."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -17,7 +17,7 @@ from terrain.classification.neighbours import Neighbours, vote
 from terrain.classification.other_things import SQUARES
 from terrain.classification.rejection import PATCHES, as_of_one_patch, images_of_patches
 from terrain.classification.trained_on import image_sum
-from terrain.classification.validation import Samples, grouped_folds
+from terrain.classification.validation import Fold, Samples
 
 CROP = 4  # times as wide as a patch, at the most, of a patch beside its mirror images
 NO_TERRAIN = -1
@@ -101,9 +101,8 @@ class Answers:
 
 def learned_confidence(
     answers: Answers,
-    way: Callable[[], Neighbours],
+    folds: Sequence[Fold],
     samples: Samples,
-    copies: Samples,
     shown: tuple[Shown, Shown, Shown],
 ) -> AnswerConfidence | None:
     """The confidence by patches as they are and altered, each held out, and by things.
@@ -112,13 +111,12 @@ def learned_confidence(
     """
     *of_terrain, things = shown
     tables: list[Table] = []
-    for train, test in grouped_folds(samples.codes, samples.groups):
-        fold = way().fit(*samples.with_copies(train, copies))
+    for _, test, model in folds:
         groups = np.unique(samples.groups[test])
         for share, kind in zip(WEIGHTS, of_terrain, strict=False):
             held = kind.of_groups(groups)
             part = len(held.codes) / len(kind.codes)
-            tables += [(share * part, *answers.table(fold, held, n)) for n in _sizes(held)]
+            tables += [(share * part, *answers.table(model, held, n)) for n in _sizes(held)]
     tables += [(WEIGHTS[-1], *answers.table(answers.model, things, n)) for n in _sizes(things)]
     return AnswerConfidence.of(tables)
 

@@ -1,6 +1,7 @@
 """How a classifier learns from samples: what makes its features, which way, k and limits."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from sklearn.base import clone
@@ -16,7 +17,7 @@ from terrain.classification.feature_jobs import Transformed, features_of
 from terrain.classification.features import FeatureSettings
 from terrain.classification.likeness import TrainingLook
 from terrain.classification.look import spread_rows
-from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours
+from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import OtherThings, squares_of_things
@@ -24,7 +25,7 @@ from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
 from terrain.classification.trained_on import common_size, has_colour
-from terrain.classification.validation import CrossValidation, Samples, best_way
+from terrain.classification.validation import CrossValidation, Fold, Samples, best_way
 from terrain.errors import PatchError
 from terrain.images import to_grey
 from terrain.one_thread import one_thread
@@ -66,7 +67,7 @@ class LearningClassifier(TrainedClassifier):
         self.one_patch_ = preset.one_patch
         counts = (self.n_neighbors,) if self.n_neighbors else preset.neighbour_counts
         try:
-            way, found = best_way(
+            way, found, folds = best_way(
                 preset.ways, counts, samples, copies, calibrates=not preset.as_published
             )
             everything = samples.with_copies(np.arange(len(samples.codes)), copies)
@@ -92,13 +93,12 @@ class LearningClassifier(TrainedClassifier):
         self.image_rejection_distances_ = (
             None if preset.as_published else quantiles(found.image_distances, self.rejected_share)
         )
-        self._learn_of_others(way, samples, copies, (strange, strange_features))
+        self._learn_of_others(folds, samples, (strange, strange_features))
 
     def _learn_of_others(
         self,
-        way: Callable[[], Neighbours],
+        folds: Sequence[Fold],
         samples: Samples,
-        copies: Samples,
         strange: tuple[Sequence[ByteImage], FloatArray],
     ) -> None:
         """Learn of images unlike training: what things are, and how sure answers are."""
@@ -106,7 +106,7 @@ class LearningClassifier(TrainedClassifier):
         if self._features is None or not isinstance(self._neighbours, DiscriminantNeighbours):
             return
         squares = squares_of_things(self.patch_size_px)
-        things = features_of(squares, self._features)
+        things = _features_of_things(self.patch_size_px, self._features)
         scaled = self._neighbours.scaler.transform
         self.other_things_ = OtherThings.of(
             scaled(samples.features), samples.codes, samples.groups, scaled(things)
@@ -121,7 +121,7 @@ class LearningClassifier(TrainedClassifier):
             self.image_rejection_distances_,
             self.training_look_,
         )
-        self.confidence_ = learned_confidence(answers, way, samples, copies, shown)
+        self.confidence_ = learned_confidence(answers, folds, samples, shown)
 
     def _strange_patches(self, patches: Sequence[ByteImage], photos: AnyArray) -> list[ByteImage]:
         """Every second of the patches whose looks are kept, altered."""
@@ -143,3 +143,17 @@ class LearningClassifier(TrainedClassifier):
             self.shown_ground_ = ShownGround.of(list(patches), samples.codes)
             rows = spread_rows(samples.groups)
             self.old_samples_ = OldSamples(samples.features[rows], labels[rows])
+
+
+def _features_of_things(size_px: int, made_by: FeatureSettings | Transformed) -> FloatArray:
+    """Features (n, F) of `squares_of_things`; those of settings are made once in a process."""
+    if isinstance(made_by, FeatureSettings):
+        return _kept_features(size_px, made_by)
+    return features_of(squares_of_things(size_px), made_by)
+
+
+@cache
+def _kept_features(size_px: int, settings: FeatureSettings) -> FloatArray:
+    features = features_of(squares_of_things(size_px), settings)
+    features.flags.writeable = False
+    return features

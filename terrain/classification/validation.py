@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from sklearn.metrics import balanced_accuracy_score
@@ -68,6 +69,14 @@ class Samples:
         return features, codes, int(follow.sum())
 
 
+class Fold(NamedTuple):
+    """A model, the rows that it was trained on, and those that were held out."""
+
+    train: IntArray
+    test: IntArray
+    model: Neighbours
+
+
 def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, IntArray]]:
     """Split into training and test indices, groups whole and classes balanced.
 
@@ -90,6 +99,16 @@ def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, Int
     return folds
 
 
+def fitted_folds(
+    neighbours: Callable[[], Neighbours], samples: Samples, copies: Samples | None = None
+) -> list[Fold]:
+    """A model for each of `grouped_folds`, trained on copies where their group is as well."""
+    return [
+        Fold(train, test, neighbours().fit(*samples.with_copies(train, copies)))
+        for train, test in grouped_folds(samples.codes, samples.groups)
+    ]
+
+
 def best_way(
     ways: Sequence[Callable[[], Neighbours]],
     neighbour_counts: tuple[int, ...],
@@ -97,15 +116,16 @@ def best_way(
     copies: Samples | None = None,
     *,
     calibrates: bool = False,
-) -> tuple[Callable[[], Neighbours], CrossValidation]:
+) -> tuple[Callable[[], Neighbours], CrossValidation, list[Fold]]:
     """The option of best balanced accuracy by `cross_validate`, the first of equal ones.
 
     These are a little too good where ways are close: a study nests this choice in its folds.
     """
-    tried = [
-        (way, cross_validate(way, neighbour_counts, samples, copies, calibrates=calibrates))
-        for way in ways
-    ]
+    tried = []
+    for way in ways:
+        folds = fitted_folds(way, samples, copies)
+        found = validated(folds, neighbour_counts, samples, calibrates=calibrates)
+        tried.append((way, found, folds))
     return max(
         tried,
         key=lambda of: balanced_accuracy_score(of[1].codes, of[1].probabilities.argmax(axis=1)),
@@ -135,31 +155,37 @@ def cross_validate(
     calibrates : bool
         Whether a temperature is fitted to the votes.
     """
+    folds = fitted_folds(neighbours, samples, copies)
+    return validated(folds, neighbour_counts, samples, calibrates=calibrates)
+
+
+def validated(
+    folds: Sequence[Fold], neighbour_counts: tuple[int, ...], samples: Samples, *, calibrates: bool
+) -> CrossValidation:
+    """What `cross_validate` finds with models that were trained already."""
     features, codes = samples.features, samples.codes
-    folds = grouped_folds(codes, samples.groups)
-    fewest = min(int(np.bincount(codes[train]).min()) for train, _ in folds)
+    fewest = min(int(np.bincount(codes[fold.train]).min()) for fold in folds)
     counts = [k for k in sorted(neighbour_counts) if k <= fewest] or [1]
     n_classes = int(codes.max()) + 1
     probabilities = np.full((len(counts), len(codes), n_classes), np.nan)
     distances = np.full(len(codes), np.nan)
     together: list[list[FloatArray]] = [[] for _ in PATCHES]
-    for train, test in folds:
-        model = neighbours().fit(*samples.with_copies(train, copies))
+    for _, test, model in folds:
         labels, distances[test] = model.labels_and_distances(features[test], counts[-1])
         for of, found in zip(together, _of_images(model, samples, test), strict=True):
             of.append(found)
         for i, k in enumerate(counts):
             probabilities[i, test] = vote(labels[:, :k], model.class_weights_)
-    kept = np.sort(np.concatenate([test for _, test in folds]))
+    kept = np.sort(np.concatenate([fold.test for fold in folds]))
     nested = np.full((len(codes), n_classes), np.nan)
-    for _, test in folds:
+    for _, test, _ in folds:
         others = np.setdiff1d(kept, test)
         rows = others if len(others) else kept
         nested[test] = probabilities[_best(probabilities, codes, rows), test]
     best = _best(probabilities, codes, kept)
     temperature = fitted_temperature(codes[kept], nested[kept]) if calibrates else None
     if calibrates:
-        nested = _tempered_by_others(nested, codes, [test for _, test in folds])
+        nested = _tempered_by_others(nested, codes, [fold.test for fold in folds])
     return CrossValidation(
         counts[best],
         kept,

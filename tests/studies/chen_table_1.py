@@ -58,7 +58,7 @@ def out_of_fold(samples: Samples, folds: list[tuple[np.ndarray, np.ndarray]]) ->
     answers = np.zeros_like(samples.codes)
     for train, test in folds:
         part = Samples(samples.features[train], samples.codes[train], samples.groups[train])
-        way, found = best_way(CHEN.ways, CHEN.neighbour_counts, part, None, calibrates=False)
+        way, found, _ = best_way(CHEN.ways, CHEN.neighbour_counts, part, None, calibrates=False)
         model = way().fit(part.features, part.codes)
         labels = model.labels(samples.features[test], found.n_neighbors)
         answers[test] = vote(labels, model.class_weights_).argmax(axis=1)

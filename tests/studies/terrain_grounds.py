@@ -131,7 +131,7 @@ def choose(
         columns = COLUMNS[name]
         samples = Samples(features[:, columns], train.codes, train.groups)
         altered = copies and _samples_of(copies, train, columns)
-        way, found = best_way(
+        way, found, _ = best_way(
             preset.ways,
             preset.neighbour_counts,
             samples,

@@ -104,7 +104,7 @@ def test_the_better_way_is_chosen_and_of_equals_the_first(rng):
         def fit(self, features, codes, copies=0):
             return super().fit(np.zeros_like(features), codes, copies)
 
-    way, found = best_way((Blind, PlainNeighbours), (1, 3), samples)
+    way, found, _ = best_way((Blind, PlainNeighbours), (1, 3), samples)
     assert way is PlainNeighbours
     again = cross_validate(PlainNeighbours, (1, 3), samples)
     np.testing.assert_array_equal(found.probabilities, again.probabilities)
