@@ -87,7 +87,9 @@ class AppearanceMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
 
     def fit(self, X: FloatArray, y: AnyArray | None = None) -> Self:  # noqa: ARG002
         """Fit the components to features `X` (n, F)."""
-        analysis = PCA(min(APPEARANCE_DIMENSIONS, *X.shape), svd_solver="covariance_eigh").fit(X)
+        count, size = X.shape
+        solver = "full" if 2 * count < size else "covariance_eigh"  # the same, the faster one
+        analysis = PCA(min(APPEARANCE_DIMENSIONS, count, size), svd_solver=solver).fit(X)
         spread = np.sqrt(analysis.explained_variance_)
         kept = spread > 1e-6 * spread[0]
         self.offset_ = analysis.mean_

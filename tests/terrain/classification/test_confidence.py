@@ -9,8 +9,9 @@ import skimage.data
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.confidence import MOST, AnswerConfidence, evidence
-from terrain.classification.confidence_learning import altered_patch
+from terrain.classification.confidence_learning import Shown, altered_patch, learned_confidence
 from terrain.classification.model_file import read_model, write_model
+from terrain.classification.validation import Fold, Samples
 from terrain.errors import ModelFileError
 from tests.terrain.classification.test_no_ground import photographs
 
@@ -81,6 +82,26 @@ def test_evidence_of_what_is_on_a_sample_or_infinitely_far_is_finite():
     given = evidence(unanimous, np.array([0.0, 1e300]), np.array([0.0, 1e300]))
     assert np.isfinite(given).all()
     np.testing.assert_allclose(known().applied(unanimous, FAR[[0, 0]], FAR[[0, 0]]).sum(axis=1), 1)
+
+
+def test_each_patch_is_judged_by_a_model_that_was_trained_without_its_photograph():
+    groups, rows = np.repeat(list("abcd"), 5), np.arange(20)
+    shown = Shown(np.zeros((20, 1)), np.zeros((20, 10)), np.zeros(20, int), groups)
+    things = replace(shown, groups=np.repeat(["thing"], 20))
+    judged = set()
+
+    class Answers:
+        model = "all"
+
+        def table(self, model, held, _):
+            judged.update((model, group) for group in held.groups.tolist())
+            return np.zeros((len(held.codes), 3)), np.arange(len(held.codes)) % 2 == 0
+
+    folds = [Fold(rows[10:], rows[:10], "of c, d"), Fold(rows[:10], rows[10:], "of a, b")]
+    samples = Samples(np.zeros((20, 1)), shown.codes, groups)
+    learned_confidence(Answers(), folds, samples, (shown, shown, things))
+    apart = {("of c, d", "a"), ("of c, d", "b"), ("of a, b", "c"), ("of a, b", "d")}
+    assert judged == {*apart, ("all", "thing")}
 
 
 def test_altered_images_and_things_are_less_sure_than_photographs_held_out(model):

@@ -78,3 +78,15 @@ def test_appearance_is_white_and_drops_directions_without_spread(rng):
     np.testing.assert_allclose(seen.mean(axis=0), 0, atol=1e-9)
     many = AppearanceMetric().fit(rng.normal(size=(500, 30)))
     assert many.transform(np.zeros((1, 30))).shape == (1, 10)
+
+
+@pytest.mark.parametrize("count", [8, 400])
+def test_appearance_is_the_widest_directions_of_few_samples_and_of_many(rng, count):
+    features = rng.normal(size=(count, 60)) @ rng.normal(size=(60, 60)) + 5.0
+    metric = AppearanceMetric().fit(features)
+    directions = min(count - 1, 10)
+    widest = np.linalg.eigvalsh(np.cov(features.T))[: -directions - 1 : -1]
+    seen = metric.transform(features)
+    np.testing.assert_allclose(np.cov(seen.T), np.eye(directions), atol=1e-9)
+    lengths = np.linalg.norm(metric.projection_, axis=0)
+    np.testing.assert_allclose(lengths, 1 / np.sqrt(widest), rtol=1e-9)
