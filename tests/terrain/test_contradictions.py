@@ -20,13 +20,13 @@ from terrain.new_terrain import contradiction_lines, new_name
 from terrain.region import Rectangle, Region
 from terrain.report.page import write_report
 from terrain.results import write_results
-from tests.odometry.feel.feel_drives import drive, drives
+from tests.odometry.feel.feel_drives import drive, drives, model_of_three
 from tests.terrain.test_feel_labels import joined
 
 
 @pytest.fixture(scope="module")
 def model():
-    return identify_feel(drives(["tiles", "gravel", "snow"], count=3))
+    return model_of_three()
 
 
 @pytest.fixture(scope="module")

@@ -7,21 +7,20 @@ import pytest
 
 from odometry.errors import ConfigError
 from odometry.feel.follow import follow_feel
-from odometry.feel.identify_feel import identify_feel
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config
 from terrain.feel_labels import FeelLabels, widened
 from terrain.main_job import run_odometry
 from terrain.switch import SwitchConfig
-from tests.odometry.feel.feel_drives import drive, drives
+from tests.odometry.feel.feel_drives import drive, model_of_three
 
 NAMES = ["tiles", "gravel", "snow"]
 
 
 @pytest.fixture(scope="module")
 def model():
-    return identify_feel(drives(NAMES, count=3))
+    return model_of_three()
 
 
 def joined(first, second):

@@ -1,10 +1,12 @@
 """Made drives: band-limited vibration by terrain and speed, without the features in use."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from scipy.signal import butter, sosfilt
 
+from odometry.feel.identify_feel import identify_feel
 from odometry.run import Robot, Run
 from odometry.table import Table
 
@@ -76,6 +78,12 @@ def drives(names, count=4, **how):
         for place, name in enumerate(names)
         for seed in range(count)
     ]
+
+
+@cache
+def model_of_three():
+    """What three runs each on tiles, gravel and snow teach; not to be changed."""
+    return identify_feel(drives(["tiles", "gravel", "snow"], count=3))
 
 
 def with_imu(run, change):

@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.feel.identify_feel import identify_feel
 from terrain.labelling.given_terrain import told_by_feel
-from tests.odometry.feel.feel_drives import drive, drives
+from tests.odometry.feel.feel_drives import drive, model_of_three
 from tests.terrain.test_feel_labels import joined
 
 
 @pytest.fixture(scope="module")
 def model():
-    return identify_feel(drives(["tiles", "gravel", "snow"], count=3))
+    return model_of_three()
 
 
 def test_labels_are_of_the_moment(model):
