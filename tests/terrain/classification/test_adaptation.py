@@ -84,9 +84,14 @@ def exchanged(image):
     return 255 - blurred
 
 
-def test_the_scores_decide_and_alone_is_the_answer_in_doubt(classifier, camera):
-    for change in (same, exchanged):
-        found = adapt(camera(4, change), classifier)
+@pytest.fixture(scope="module")
+def adapted(classifier, camera):
+    """From photographs of a camera that exchanges the terrains."""
+    return adapt(camera(4, exchanged), classifier)
+
+
+def test_the_scores_decide_and_alone_is_the_answer_in_doubt(classifier, camera, adapted):
+    for found in (adapt(camera(4, same), classifier), adapted):
         assert set(found.scores) == {ALONE, MIXED, OLD}
         assert found.scores[found.kept] >= found.scores[ALONE]
         if found.kept == ALONE:
@@ -113,18 +118,17 @@ def test_an_old_model_that_is_better_than_any_is_kept():
     assert clearly_best(codes, right | {OLD: codes < 2}, groups) == OLD
 
 
-def test_a_score_is_of_photographs_that_were_held_out(classifier, camera):
-    found = adapt(camera(4, exchanged), classifier)
+def test_a_score_is_of_photographs_that_were_held_out(classifier, adapted):
     alone = TerrainClassifier(metres_per_pixel=0.006)
-    patches = found.training.patches
+    patches = adapted.training.patches
     alone.fit(patches.images, patches.labels, patches.groups)
     out_of_fold = alone.cross_validation_
     right = out_of_fold.probabilities.argmax(axis=1) == out_of_fold.codes
     by_class = [right[out_of_fold.codes == code].mean() for code in (0, 1)]
-    assert found.scores[ALONE] == pytest.approx(np.mean(by_class))
+    assert adapted.scores[ALONE] == pytest.approx(np.mean(by_class))
     right = np.asarray(classifier.predict(patches.images)) == np.array(patches.labels)
     labels = np.array(patches.labels)
-    assert found.scores[OLD] == pytest.approx(
+    assert adapted.scores[OLD] == pytest.approx(
         np.mean([right[labels == name].mean() for name in ("boards", "gravel")])
     )
 
