@@ -43,8 +43,8 @@ def test_compare_with_little_noise_keeps_the_horizon():
 
 def test_gap_finds_slower_wheels_from_positions_alone():
     """Both treads move 20 % less on the measured runs than on the calibration."""
-    known = [emptied(drive(3, noise_m=0.01, gyroscope=True, duration_s=160.0, name="yard"))]
-    run = emptied(drive(4, noise_m=0.01, gyroscope=True, duration_s=160.0, name="hill"))
+    known = [emptied(drive(3, noise_m=0.01, gyroscope=True, duration_s=80.0, name="yard"))]
+    run = emptied(drive(4, noise_m=0.01, gyroscope=True, duration_s=80.0, name="hill"))
     odometry = {
         name: column / 0.8 if name in ("v_left", "v_right") else column
         for name, column in run.odometry.columns.items()
