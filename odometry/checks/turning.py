@@ -5,15 +5,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import (
     Mend,
     exchanged,
     gyroscope_times,
+    in_turn,
     times,
     treads_times,
 )
+
+LEAST_FORWARDS = 0.5  # how clearly treads say which way is forwards
 
 
 def turning(evidence: Evidence) -> Iterator[Finding]:
@@ -65,6 +68,8 @@ def _imu_hint(evidence: Evidence) -> str:
 
 def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
     forward = _forward_sign(evidence)
+    if pose is gyroscope and evidence.heading is not None and not _reading_is_plain(evidence):
+        return _yaw_and_gyroscope_reversed(evidence)
     if pose is Sense.UNKNOWN:
         return _finding(
             "treads_or_gyroscope_reversed",
@@ -104,6 +109,12 @@ def _all_opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Finding:
 def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
     if evidence.heading is not None and not _reading_is_plain(evidence):
         return _yaw_reversed(evidence, others)
+    if alone and _course_is_backwards(evidence):
+        return disagreement(
+            f"yaw of pose.csv turns against the treads ({_correlations(evidence)}; {others}), and "
+            "its course is opposite to its yaw while the treads drive forwards: no frame with z "
+            "down does both (stamps of pose.csv that run backwards would)"
+        )
     yaw = "yaw" if evidence.yaw_measured else "the course"
     if not evidence.yaw_measured:
         cause = (
@@ -127,6 +138,27 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
         cause,
         "Write pose.csv with x forward, y left, z up and yaw counter-clockwise",
         times("pose", -1.0, "y", "yaw"),
+    )
+
+
+def _course_is_backwards(evidence: Evidence) -> bool:
+    """Whether poses move against their own yaw where the treads drive forwards."""
+    heading = evidence.heading
+    if heading is None or heading.forwards < LEAST_FORWARDS:
+        return False
+    return abs(heading.offset_rad) > 3 * np.pi / 4
+
+
+def _yaw_and_gyroscope_reversed(evidence: Evidence) -> Finding:
+    return _finding(
+        "yaw_reversed",
+        f"yaw of pose.csv and gyro_z turn against the treads ({_correlations(evidence)}), and its "
+        "course turns against its yaw, as the treads do",
+        "Yaw and gyro_z are clockwise (z down, as autopilots log an attitude) beside positions "
+        "with z up; or left and right treads are swapped, and positions are mirrored as well: "
+        "these have the same effect",
+        "Negate yaw and gyro_z, if a left turn by hand makes them fall",
+        in_turn(times("pose", -1.0, "yaw"), gyroscope_times(evidence.run, -1.0)),
     )
 
 
