@@ -21,6 +21,7 @@ from odometry.checks.disagreement import (
     yaw_against_course,
 )
 from odometry.checks.evidence import Evidence
+from odometry.checks.explained_lags import explained_lags
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
@@ -39,7 +40,6 @@ from odometry.checks.smoothed_poses import smoothed_poses
 from odometry.checks.stamp_pace import stamp_pace
 from odometry.checks.stamps import stamps, unreadable_stamps
 from odometry.checks.stuck_encoders import stuck_encoders
-from odometry.checks.timing import timing
 from odometry.checks.tread_motion import tread_motion
 from odometry.checks.tread_samples import tread_samples
 from odometry.checks.treads import equal_treads, treads
@@ -79,7 +79,7 @@ CHECKS: tuple[Check, ...] = (
     tread_samples,
     treads,
     gaps,
-    timing,
+    explained_lags,
     late_positions,
     poses,
     gyroscope,

@@ -1,0 +1,42 @@
+"""Lags that are named where other stamps explain what differs, and disagreement elsewhere."""
+
+from collections.abc import Iterator
+
+from odometry.checks.evidence import Evidence
+from odometry.checks.finding import Finding, disagreement
+from odometry.checks.relation import Relation
+from odometry.checks.timing import timing
+
+OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
+# Share of the turns not explained that is left with other stamps: 0.7 at most where they were late,
+# 0.76 and more where yaw wanders or bends, or a gyroscope has a dead zone.
+LEFT = 0.75
+
+
+def explained_lags(evidence: Evidence) -> Iterator[Finding]:
+    """The findings of `timing`: turns that differ otherwise seem late by chance."""
+    for finding in timing(evidence):
+        if finding.name not in OF_STAMPS or _is_explained(evidence, finding):
+            yield finding
+        else:
+            yield disagreement(f"{finding.seen}, but with other stamps they differ by as much")
+
+
+def _is_explained(evidence: Evidence, finding: Finding) -> bool:
+    """Whether two sensors agree far better on the turns with the stamps mended."""
+    if finding.mend is None:
+        return True
+    mended = Evidence(finding.mend(evidence.run), evidence.left_out_s)
+    return any(
+        1 - after.explained < LEFT * (1 - before.explained)
+        for before, after in zip(_relations(evidence), _relations(mended), strict=True)
+        if before is not None and after is not None
+    )
+
+
+def _relations(evidence: Evidence) -> tuple[Relation | None, ...]:
+    return (
+        evidence.pose_turn_by_gyroscope,
+        evidence.pose_turn_by_treads,
+        evidence.gyroscope_by_treads,
+    )
