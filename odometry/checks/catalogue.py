@@ -61,6 +61,7 @@ CATALOGUE: dict[str, str] = {
     "yaw_off_by_90": "yaw counts from another axis",
     "yaw_backwards": "yaw off by 180 degrees",
     "yaw_offset": "yaw off by a constant",
+    "yaw_drifts": "yaw that turns steadily against the course",
     "yaw_bent": "a compass that iron deviates",
     "yaw_constant": "yaw was not measured",
     "yaw_is_course": "yaw computed from positions",

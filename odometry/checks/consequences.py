@@ -91,6 +91,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | (YAW - {"yaw_unrelated"})
     | {"position_unit", "pose_mirrored", "positions_mirrored"},
     "yaw_unrelated": (YAW - {"yaw_unrelated"}) | {"pose_late", "poses_unrelated"},
+    "yaw_drifts": YAW | POSES | {"yaw_jumps", "gyroscope_bias", "yaw_bent"},
     "gyroscope_unrelated": frozenset({"gyroscope_unit", "gyroscope_bias", "treads_late"}),
     "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
     "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
@@ -110,7 +111,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "gyroscope_held": frozenset({"gyroscope_dead", "yaw_jumps", "yaw_bent"}),
     "gyroscope_dead": frozenset(
         {"yaw_bent", "gyroscope_unit", "yaw_jumps", "stuck_encoder", "turns_at_rest"}
-        | {"turn_blocked"}
+        | {"turn_blocked", "gyroscope_late"}
     ),
     "interpolated_poses": frozenset({"clocks_apart", "yaw_jumps", "smoothed_poses"}),
     "turns_at_rest": frozenset({"gyroscope_bias", "tread_offset"}),

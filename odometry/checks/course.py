@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.checks.course_offsets import offset_beside_arm_rad, parts_apart
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.heading import CONSISTENT, Heading, headings
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.undo import Mend, changed, times, yaw_plus
@@ -54,7 +55,9 @@ def _turns_agree(evidence: Evidence) -> bool:
 
 def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
     offset, degrees = heading.offset_rad, float(np.degrees(heading.offset_rad))
-    if abs(offset) < OFF_RAD + np.arctan(evidence.arm_share):
+    beside_arm = offset_beside_arm_rad(evidence, heading)
+    arm_rad = float(np.arctan(evidence.arm_share)) if beside_arm is None else 0.0
+    if abs(offset if beside_arm is None else beside_arm) < OFF_RAD + arm_rad:
         return
     if heading.forwards < LEAST_FORWARDS:
         return
@@ -62,7 +65,9 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
         f"the course of pose.csv lies {degrees:.0f} degrees from its yaw while the treads drive "
         f"forwards ({heading.windows} windows, concentration {heading.concentration:.2f})"
     )
-    if abs(abs(degrees) - 180) < 20:
+    if differ := parts_apart(evidence, heading):
+        yield disagreement(f"{seen}; {differ}")
+    elif abs(abs(degrees) - 180) < 20:
         if pose_sense(evidence) is Sense.OPPOSITE:
             return  # both treads reversed: said with the turns
         yield _finding(
@@ -87,8 +92,8 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_offset",
             seen,
             f"Yaw is off by {degrees:.0f} degrees: the sensor is turned on the robot, or yaw "
-            "counts from another axis than x (a compass not corrected, grid against true north)"
-            f"{_as_well(evidence)}",
+            "counts from another axis than x (a compass not corrected, grid against true north); "
+            f"or the robot slides to one side all the time{_as_well(evidence)}",
             f"Add {offset:+.4f} rad to yaw, or let `gap` name a heading_offset",
             yaw_plus(offset),
         )

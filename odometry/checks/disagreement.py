@@ -4,13 +4,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from odometry.arrays import FloatArray
 from odometry.checks.carried import carried_along
+from odometry.checks.course_offsets import course_apart, yaw_wanders
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.heading import Heading, across_m, along_m, far_and_straight, headings
+from odometry.checks.gyroscope import drifts_at_rest
 from odometry.checks.heading_spans import heading_spans
-from odometry.checks.motion import Motion
 from odometry.checks.position_differences import (
     paths_apart,
     positions_apart,
@@ -19,6 +18,8 @@ from odometry.checks.position_differences import (
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.relation import Relation
 from odometry.checks.turn_signs import Sense, gyroscope_sense, lasting_turn_rad, pose_sense
+from odometry.checks.turns_in_parts import turns_flip
+from odometry.checks.yaw_drift import course_drifts
 
 POOR = 0.6  # correlation below which sensors do not measure the same motion
 LEAST_WINDOWS = 15
@@ -40,7 +41,9 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
     seen = (
         scales_apart(evidence),
         headings_apart(evidence),
-        yaw_wanders(evidence),
+        turns_flip(evidence),
+        drifts_at_rest(evidence),
+        yaw_wanders(evidence) or course_drifts(evidence) or course_apart(evidence),
         positions_apart_everywhere(evidence),
         paths_apart(evidence),
         one_side_not_proportional(evidence),
@@ -57,7 +60,9 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     together = by_gyroscope is not None and by_gyroscope.explained > POOR
     unrelated = Sense.UNRELATED
-    if pose is unrelated and gyroscope is unrelated and together:
+    if unrelated in (pose, gyroscope) and (flips := turns_flip(evidence)):
+        yield disagreement(flips)
+    elif pose is unrelated and gyroscope is unrelated and together:
         yield _finding(
             "treads_unrelated",
             f"turns by gyroscope and poses agree (correlation {by_gyroscope.correlation:.2f}), the "
@@ -85,7 +90,8 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             "gyroscope_unrelated",
             "gyro_z has little to do with the turns of "
             + ("treads and poses" if agreed else "the treads"),
-            "gyro_z is of another axis (z is not up), another recording or another clock"
+            "gyro_z is of another axis (z is not up), another recording or another clock, or it "
+            "holds no turn rate (a magnitude, its change, a component along a fixed direction)"
             + ("" if agreed else "; or the treads slip all the time"),
             "State the axes of the sensor in [sensors] imu; check --picture shows the yaw rates",
         )
@@ -130,11 +136,6 @@ CORRELATED = 0.9
 CLOSELY = 0.99  # noise of a gyroscope lowers its ratio by two hundredths there, at most
 CERTAIN = 5.0  # standard deviations
 LEAST_SCALED_RAD = 1.0  # range of the heading from which the ratio of a gyroscope is compared
-LEAST_SPANS = 30
-PIECES = 8  # of the recording, in each of which yaw has one offset to the course
-PIECE_HELD = 0.9  # concentration in a piece
-OFFSETS_RAD = np.radians(25)  # between pieces
-MOST_TURN_RAD = 1.0  # within a window that has a course
 
 
 def scales_apart(evidence: Evidence) -> str:
@@ -195,56 +196,3 @@ def headings_apart(evidence: Evidence) -> str:
         f"headings of gyroscope and poses part by {np.degrees(off):.0f} degrees within "
         f"{np.median(spans.lasts_s):.0f} s (in one of ten spans)"
     )
-
-
-def yaw_wanders(evidence: Evidence) -> str:
-    """Yaw that fits the course in each piece of the recording, with another offset in each.
-
-    Beside what the robot slips sideways in turns: its course is off its yaw by an arm times how
-    tight the turns of a piece are.
-    """
-    m, found = evidence.motion, []
-    count = min(PIECES, len(m) // LEAST_SPANS)
-    for rows in np.array_split(np.arange(len(m)), max(count, 1)):
-        piece = m.rows(rows)
-        heading = headings(piece, evidence.turn_rad(piece)).get("radians")
-        if heading is not None and heading.concentration > PIECE_HELD:
-            found.append((heading.offset_rad, _tightness(evidence, piece, heading)))
-    if len(found) < max(count, PIECES) / 2:
-        return ""
-    arm_m = _arm_m(evidence)
-    offsets = np.array([offset - arm_m * tightness for offset, tightness in found])
-    middle = np.angle(np.exp(2j * offsets).sum()) / 2
-    away = np.angle(np.exp(2j * (offsets - middle))) / 2
-    if np.ptp(away) < OFFSETS_RAD:
-        return ""
-    return (
-        f"yaw of pose.csv fits its course with offsets of {np.degrees(away.min()):+.0f} to "
-        f"{np.degrees(away.max()):+.0f} degrees in pieces of the recording"
-    )
-
-
-def _tightness(evidence: Evidence, piece: Motion, heading: Heading) -> float:
-    """How much a piece turns for its way [rad/m], in the windows that its offset is taken from."""
-    turn = evidence.turn_rad(piece)
-    used = far_and_straight(piece, turn)
-    known = np.isfinite(turn) & (False if used is None else used)
-    return _proportion(turn[known], along_m(piece, heading)[known])
-
-
-def _arm_m(evidence: Evidence) -> float:
-    """Motion aside for each turn, beside what an offset of yaw explains of both."""
-    m = evidence.motion
-    turn = evidence.turn_rad(m)
-    heading = headings(m, turn).get("radians")
-    if heading is None:
-        return 0.0
-    across, along = across_m(m, heading), along_m(m, heading)
-    known = np.isfinite(across) & np.isfinite(turn) & (np.abs(turn) < MOST_TURN_RAD)
-    across, along, turn = across[known], along[known], turn[known]
-    return _proportion(across, turn - _proportion(turn, along) * along)
-
-
-def _proportion(values: FloatArray, of: FloatArray) -> float:
-    """Least squares; 0 of nothing."""
-    return float(of @ values) / max(float(of @ of), 1e-12)

@@ -12,6 +12,7 @@ from odometry.windows.spans import constant_spans
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
+LEAST_DRIFT_RAD_S = 0.01
 CERTAIN = 4.0
 STATIONARY_M_S = 0.005
 LEAST_STATIONARY_S = 2.0
@@ -19,6 +20,7 @@ CLIPPED = 0.01  # share of rows at the very largest rate
 LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
 HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
 DEAD_S = 1.0
+FAR_FROM_ZERO = 10.0  # times the step between other rates: none is smaller
 LEAST_HOLDS, LONG_HOLD_S = 20, 0.3  # from which a rate that is held makes headings late
 EVEN = 1.5  # ratio of a long to a short hold below which they have one pace
 OFTEN = 0.3  # share of these holds in which the treads change
@@ -42,15 +44,15 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
     bias, sigma, how = found
     if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
         return
-    large = abs(bias) > LARGE_BIAS_RAD_S
-    if large and how.startswith("while stationary"):
+    large, at_rest = abs(bias) > LARGE_BIAS_RAD_S, how.startswith("while stationary")
+    if large and at_rest:
         yield _turns_at_rest(bias, how)
         return
     yield Finding(
         "gyroscope_bias",
         Level.WARNING if large else Level.NOTE,
         f"gyro_z reads {bias:+.4f} +- {sigma:.4f} rad/s {how}",
-        "The gyroscope has a bias"
+        ("The gyroscope has a bias" if at_rest else "The gyroscope has a bias, or yaw drifts")
         + (" far above what is usual (units, or not at rest)" if large else ""),
         "Subtract it where the yaw rate is used; some seconds at rest measure it",
     )
@@ -92,6 +94,22 @@ def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
     if found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
         return None
     return -float(found.coefficients[1]), 2 * float(found.sigmas[1]), "more than measured yaw turns"
+
+
+def drifts_at_rest(evidence: Evidence) -> str:
+    """Measured yaw that turns steadily against a gyroscope that reads another rate at rest."""
+    if evidence.yaw_rate is None or (rest := stationary_bias(evidence)) is None:
+        return ""
+    if (by_poses := _bias_by_poses(evidence)) is None:
+        return ""
+    apart = rest[0] - by_poses[0]
+    if abs(apart) < LEAST_DRIFT_RAD_S + CERTAIN * (rest[1] + by_poses[1]):
+        return ""
+    return (
+        f"measured yaw turns by {apart:+.3f} rad/s besides what gyro_z reads, which is "
+        f"{rest[0]:+.3f} rad/s at rest (poses that drift round, or a gyroscope that is wrong in "
+        "turns)"
+    )
 
 
 def _clipped(evidence: Evidence) -> Iterator[Finding]:
@@ -161,9 +179,23 @@ def _dead(evidence: Evidence) -> Iterator[Finding]:
         "gyroscope_dead",
         Level.WARNING,
         f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
-        "The gyroscope is stuck or was lost",
+        _dead_zone(evidence) or "The gyroscope is stuck or was lost",
         "Leave gyro_z empty there",
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+    )
+
+
+def _dead_zone(evidence: Evidence) -> str:
+    """Words where rates are zero or far from zero: slow turns are cut off."""
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    sizes = np.unique(np.abs(evidence.yaw_rate[1]))
+    if len(sizes) < LIVELY or sizes[0] > 0:
+        return ""
+    if sizes[1] < FAR_FROM_ZERO * float(np.quantile(np.diff(sizes[1:]), 0.9)):
+        return ""
+    return (
+        f"It has a dead zone: slower turns than {sizes[1]:.2g} rad/s read zero (a threshold "
+        "against drift); or it was lost at times"
     )
 
 

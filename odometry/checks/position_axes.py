@@ -8,12 +8,13 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import middle_rad
-from odometry.checks.relation import relation
+from odometry.checks.relation import Relation, relation
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
 
 MISSING = 0.1  # of what is measured along the other axis; good poses have 0.9 and more
 SURE = 5.0  # standard deviations
 LEAST_DRIVEN_M = 3.0  # along the direction that is missing
+AS_MUCH = 0.2  # by which yaw may turn more or less than the gyroscope
 HELD = 0.9  # correlation of turns with those of the gyroscope, or of positions with the way
 
 
@@ -35,8 +36,10 @@ def position_axes(evidence: Evidence) -> Iterator[Finding]:
     known = [fit for fit in fits if fit is not None]
     axes, sizes, ways = np.linalg.svd([fit.coefficients for fit in known])
     sigma = max(float(fit.sigmas.max()) for fit in known)
-    best = max(fit.correlation for fit in known)
-    if sizes[1] + SURE * sigma > MISSING * sizes[0] or best < HELD:
+    best = max(known, key=lambda fit: fit.correlation)
+    if sizes[1] + SURE * sigma > MISSING * sizes[0] or best.correlation < HELD:
+        return
+    if _is_way_ahead(evidence, axes[:, 0], best):
         return
     missing_m = float(np.nansum(np.abs(driven_m @ ways[1])))
     if missing_m < LEAST_DRIVEN_M:
@@ -56,11 +59,18 @@ def position_axes(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _yaw_holds(evidence: Evidence) -> bool:
-    """Whether measured yaw turns as the gyroscope, else as the treads do."""
+    """Whether measured yaw turns as much as the gyroscope, else to the side of the treads."""
     found = evidence.pose_turn_by_gyroscope
     if found is not None and gyroscope_sense(evidence) is not Sense.OPPOSITE:
-        return found.certain() and found.correlation > HELD and found.slope > 0
+        as_much = abs(found.slope - 1) < AS_MUCH
+        return found.certain() and found.correlation > HELD and as_much
     return pose_sense(evidence) is Sense.AGREES
+
+
+def _is_way_ahead(evidence: Evidence, axis: FloatArray, by_yaw: Relation) -> bool:
+    """Whether what is measured along an axis is the way ahead, whatever yaw says."""
+    ahead = relation(evidence.motion.moved_m @ axis, evidence.motion.mean_m)
+    return ahead is not None and ahead.explained > by_yaw.explained
 
 
 def _axis(direction: FloatArray) -> str:

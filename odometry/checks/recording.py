@@ -47,6 +47,7 @@ from odometry.checks.turning import turning
 from odometry.checks.units import units
 from odometry.checks.unreadable import no_run_folder, unreadable
 from odometry.checks.unsigned import unsigned
+from odometry.checks.yaw_drift import yaw_drifts
 from odometry.errors import RunFolderError
 from odometry.run import Run
 
@@ -64,6 +65,7 @@ CHECKS: tuple[Check, ...] = (
     yaw_against_course,
     turning,
     course,
+    yaw_drifts,
     position_axes,
     robot_sizes,
     equal_treads,

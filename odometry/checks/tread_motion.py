@@ -17,6 +17,7 @@ CONTRADICTED = 5.0  # times the usual residual
 SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit to all of them
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 OTHERWISE = 0.7  # of the motion by which it differs: on another terrain it does by a half
+SPEEDS = 0.8  # share of a motion that columns explain which are speeds
 SHOWN = 3  # times of which begin and end are printed
 LOST = (
     "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that stopped)"
@@ -143,7 +144,10 @@ def is_read(evidence: Evidence, span: FloatArray) -> bool:
 
 def _counters(evidence: Evidence) -> Iterator[Finding]:
     """Columns whose changes, not whose values, are the motion."""
-    for motion, target, plain in _targets(evidence):
+    targets = list(_targets(evidence))
+    if any(plain is not None and plain.explained > SPEEDS for _, _, plain in targets):
+        return  # a gyroscope that holds the change of the turn rate makes counters of speeds
+    for motion, target, plain in targets:
         rows = [
             np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
             for at_s in (motion.start_s, motion.end_s)

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.turn_signs import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turns_in_parts import turns_flip
 from odometry.checks.undo import (
     Mend,
     exchanged,
@@ -24,6 +25,9 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
     gyroscope, pose = gyroscope_sense(evidence), pose_sense(evidence)
     known = [s for s in (gyroscope, pose) if s is not Sense.UNKNOWN]
     if not known or all(s is Sense.AGREES for s in known):
+        return
+    if flips := turns_flip(evidence):
+        yield disagreement(flips)
         return
     for tread in (Sense.LEFT_REVERSED, Sense.RIGHT_REVERSED):
         if set(known) == {tread}:
