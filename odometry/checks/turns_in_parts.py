@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.motion import Motion
 from odometry.checks.relation import relation
-from odometry.checks.turn_signs import LEAST_TURN_RAD, lasting_turn_rad
+from odometry.checks.turn_signs import LEAST_TURN_RAD
 
 PARTS = 8
 CERTAIN = 8.0  # standard deviations
@@ -26,7 +26,7 @@ def turns_flip(evidence: Evidence) -> str:
         ("poses and gyroscope", poses, evidence.pose_turn_rad, poses.gyroscope_rad),
     )
     for names, motion, turns, others in pairs:
-        signs = [_sign(motion.rows(rows), turns[rows], others[rows]) for rows in _parts(motion)]
+        signs = [_sign(turns[rows], others[rows]) for rows in _parts(motion)]
         if {-1, 1} <= set(signs):
             return (
                 f"{names} turn together in one part of the recording, and against each other in "
@@ -35,16 +35,16 @@ def turns_flip(evidence: Evidence) -> str:
     return ""
 
 
-def _parts(motion: Motion) -> list[np.ndarray]:
+def _parts(motion: Motion) -> list[IntArray]:
     ways = [np.flatnonzero(motion.mean_m > 0), np.flatnonzero(motion.mean_m < 0)]
     return [*np.array_split(np.arange(len(motion)), PARTS), *ways]
 
 
-def _sign(motion: Motion, turns: FloatArray, others: FloatArray) -> int:
+def _sign(turns: FloatArray, others: FloatArray) -> int:
     """The sign of a relation; 0 where it is not certain."""
     found = relation(turns, others)
     if found is None or not found.certain(0, CERTAIN) or abs(found.correlation) < SURELY:
         return 0
-    if lasting_turn_rad(turns, motion.lasts_s) < LEAST_TURN_RAD:
+    if np.nansum(np.abs(turns)) < LEAST_TURN_RAD:
         return 0
     return int(np.sign(found.slope))
