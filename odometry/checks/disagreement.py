@@ -17,6 +17,7 @@ from odometry.checks.position_differences import (
 )
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.relation import Relation
+from odometry.checks.scale_drift import scale_drifts
 from odometry.checks.turn_signs import Sense, gyroscope_sense, lasting_turn_rad, pose_sense
 from odometry.checks.turns_in_parts import turns_flip
 from odometry.checks.yaw_drift import course_drifts
@@ -48,6 +49,7 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         paths_apart(evidence),
         one_side_not_proportional(evidence),
         holds_the_mean(evidence),
+        scale_drifts(evidence),
         carried_along(evidence),
         *treads_unlike(evidence),
     )
