@@ -20,6 +20,7 @@ PIECES = 8  # of the recording, in each of which yaw has one offset to the cours
 PIECE_HELD = 0.9  # concentration in a piece
 OFFSETS_RAD = np.radians(25)  # between pieces
 MOST_TURN_RAD = 1.0  # within a window that has a course
+POOR = 0.75  # concentration; 0.80 and more in recordings whose distances go with the treads
 STEADY = 0.96  # correlation of distances; on ice, where courses leave yaw, it is 0.93 and less
 LEAST_WINDOWS = 20
 HOLDS, MOST_APART_RAD = 0.6, np.radians(25)  # of an offset, and at most, by which parts differ
@@ -113,8 +114,11 @@ def parts_apart(evidence: Evidence, heading: Heading) -> str:
 
 def course_apart(evidence: Evidence) -> str:
     """A course that does not go with yaw, though distances go with the treads."""
-    distance, best = evidence.distance_by_mean, evidence.best_concentration
-    if not evidence.yaw_measured or evidence.heading is not None or best is None:
+    distance = evidence.distance_by_mean
+    found = headings(evidence.motion, evidence.turn_rad(evidence.motion))
+    if not evidence.yaw_measured or not found:
+        return ""
+    if max(found[name].concentration for name in ("radians", "radians, reversed")) > POOR:
         return ""
     if distance is None or distance.correlation < STEADY or distance.measured < LEAST_WINDOWS:
         return ""

@@ -11,6 +11,7 @@ OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
 # Share of the turns not explained that is left with other stamps: 0.7 at most where they were late,
 # 0.76 and more where yaw wanders or bends, or a gyroscope has a dead zone.
 LEFT = 0.75
+DIFFER = 0.02  # share of the turns not explained, below which sensors agree
 
 
 def explained_lags(evidence: Evidence) -> Iterator[Finding]:
@@ -18,7 +19,7 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
     for finding in timing(evidence):
         if finding.name not in OF_STAMPS or _is_explained(evidence, finding):
             yield finding
-        else:
+        elif any(of is not None and 1 - of.explained > DIFFER for of in _relations(evidence)):
             yield disagreement(f"{finding.seen}, but with other stamps they differ by as much")
 
 
