@@ -92,7 +92,17 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"position_unit", "pose_mirrored", "positions_mirrored"},
     "yaw_unrelated": (YAW - {"yaw_unrelated"}) | {"pose_late", "poses_unrelated"},
     "yaw_drifts": YAW | POSES | {"yaw_jumps", "gyroscope_bias", "yaw_bent"},
-    "gyroscope_unrelated": frozenset({"gyroscope_unit", "gyroscope_bias", "treads_late"}),
+    "gyroscope_unrelated": frozenset(
+        {
+            "gyroscope_unit",
+            "gyroscope_bias",
+            "treads_late",
+            "yaw_jumps",
+            "yaw_bent",
+            "turns_at_rest",
+        }
+        | {"track_width", "slip_in_turns", "gyroscope_reversed", "pose_late", "gyroscope_late"}
+    ),
     "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
     "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
     "treads_both_reversed": YAW,

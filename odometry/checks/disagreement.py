@@ -24,6 +24,7 @@ from odometry.checks.yaw_drift import course_drifts
 
 POOR = 0.6  # correlation below which sensors do not measure the same motion
 LEAST_WINDOWS = 15
+SHARP, ALIKE = 0.3, 0.3  # of the sharpest turns, and of those to the other side
 
 
 def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[Finding]:
@@ -62,7 +63,14 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
     by_gyroscope = evidence.pose_turn_by_gyroscope
     together = by_gyroscope is not None and by_gyroscope.explained > POOR
     unrelated = Sense.UNRELATED
-    if unrelated in (pose, gyroscope) and (flips := turns_flip(evidence)):
+    if _is_magnitude(evidence):
+        yield _finding(
+            "gyroscope_unrelated",
+            "gyro_z is never negative, though the treads turn the robot to both sides",
+            "gyro_z holds the size of the turn rate: its sign was lost",
+            "Log the yaw rate with its sign",
+        )
+    elif unrelated in (pose, gyroscope) and (flips := turns_flip(evidence)):
         yield disagreement(flips)
     elif pose is unrelated and gyroscope is unrelated and together:
         yield _finding(
@@ -99,6 +107,19 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
+def _is_magnitude(evidence: Evidence) -> bool:
+    """Whether a yaw rate is never negative, and as large in turns to one side as to the other."""
+    m = evidence.uniform
+    if evidence.yaw_rate is None or evidence.yaw_rate[1].min() < 0 or len(m) < LEAST_WINDOWS:
+        return False
+    sharp_m = SHARP * np.quantile(np.abs(m.difference_m), 0.95)
+    sides = [m.gyroscope_rad[side * m.difference_m > sharp_m] for side in (-1, 1)]
+    if min(map(len, sides)) < LEAST_WINDOWS:
+        return False
+    middles = sorted(float(np.nanmedian(turns)) for turns in sides)
+    return middles[0] > ALIKE * middles[1]
+
+
 def _moves(found: Relation | None) -> bool:
     return found is not None and found.measured >= LEAST_WINDOWS
 
@@ -110,7 +131,7 @@ def yaw_against_course(evidence: Evidence) -> Iterator[Finding]:
     distance = evidence.distance_by_mean
     if distance is None or distance.correlation < 0.9 or distance.measured < 3 * LEAST_WINDOWS:
         return
-    if pose_sense(evidence) is not Sense.UNRELATED:
+    if pose_sense(evidence) is not Sense.UNRELATED or turns_flip(evidence):
         return
     if evidence.best_concentration is None or evidence.best_concentration > POOR:
         return

@@ -2,15 +2,18 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, disagreement
 from odometry.checks.relation import Relation
 from odometry.checks.timing import timing
 
 OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
-# Share of the turns not explained that is left with other stamps: 0.7 at most where they were late,
-# 0.76 and more where yaw wanders or bends, or a gyroscope has a dead zone.
-LEFT = 0.75
+ORDINARY = 0.9  # share of the windows: stops and gaps make outliers of the others
+# Share of what two sensors differ by that is left with other stamps: 0.72 at most where they were
+# late, 0.91 and more where yaw wanders or bends, or a gyroscope has a dead zone.
+LEFT = 0.8
 DIFFER = 0.02  # share of the turns not explained, below which sensors agree
 
 
@@ -29,10 +32,16 @@ def _is_explained(evidence: Evidence, finding: Finding) -> bool:
         return True
     mended = Evidence(finding.mend(evidence.run), evidence.left_out_s)
     return any(
-        1 - after.explained < LEFT * (1 - before.explained)
+        _ordinary_difference(after) < LEFT * _ordinary_difference(before)
         for before, after in zip(_relations(evidence), _relations(mended), strict=True)
         if before is not None and after is not None
     )
+
+
+def _ordinary_difference(found: Relation) -> float:
+    """Mean size of the smaller residuals."""
+    sizes = np.sort(np.abs(found.residuals[np.isfinite(found.residuals)]))
+    return float(np.mean(sizes[: max(int(ORDINARY * len(sizes)), 1)]))
 
 
 def _relations(evidence: Evidence) -> tuple[Relation | None, ...]:

@@ -12,7 +12,7 @@ from odometry.windows.spans import constant_spans
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
-LEAST_DRIFT_RAD_S = 0.01
+LEAST_DRIFT_RAD_S, SURELY = 0.01, 2.0  # times what is said of both rates
 CERTAIN = 4.0
 STATIONARY_M_S = 0.005
 LEAST_STATIONARY_S = 2.0
@@ -103,7 +103,7 @@ def drifts_at_rest(evidence: Evidence) -> str:
     if (by_poses := _bias_by_poses(evidence)) is None:
         return ""
     apart = rest[0] - by_poses[0]
-    if abs(apart) < LEAST_DRIFT_RAD_S + CERTAIN * (rest[1] + by_poses[1]):
+    if abs(apart) < LEAST_DRIFT_RAD_S + SURELY * (rest[1] + by_poses[1]):
         return ""
     return (
         f"measured yaw turns by {apart:+.3f} rad/s besides what gyro_z reads, which is "

@@ -9,10 +9,12 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Level
 from odometry.checks.position_axes import position_axes
 from odometry.checks.recording import check_recording
+from odometry.checks.scale_drift import scale_drifts
 from odometry.checks.tread_motion import tread_motion
 from odometry.checks.turns_in_parts import turns_flip
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round
+from tests.odometry.checks.test_other_robots import PERIOD_S, drive
 from tests.odometry.checks.test_position_axes import without_gyroscope
 
 
@@ -163,3 +165,25 @@ def test_yaw_that_wanders_is_not_late():
     ]
     run = put(run, "pose", yaw=run.pose["yaw"] + 0.4 * wander / wander.std())
     assert not {"pose_late", "clocks_apart"} & set(warnings(run))
+
+
+def test_a_gyroscope_that_lost_its_sign_holds_a_size():
+    (found,) = warnings(gyroscope(turning_all_round(), np.abs)).values()
+    assert found.name == "gyroscope_unrelated"
+    assert "its sign was lost" in found.cause
+
+
+def test_a_drive_that_turns_to_one_side_lost_no_sign():
+    at_s = PERIOD_S * np.arange(2400)
+    run = drive(np.full(2400, 0.8), np.maximum(0.4 * np.sin(at_s / 5), 0), yaw_sigma=0.01)
+    run = gyroscope(run, lambda rate: np.maximum(rate, 0))
+    assert "gyroscope_unrelated" not in warnings(run)
+
+
+def test_a_scale_of_the_treads_that_drifts_is_a_disagreement():
+    run = turning_all_round()
+    drift = np.linspace(1, 1.7, len(run.odometry))
+    run = treads(run, lambda left, right: (drift * left, drift * right))
+    assert scale_drifts(Evidence(run))
+    assert "sensors_disagree" in warnings(run)
+    assert not scale_drifts(Evidence(turning_all_round()))
