@@ -65,7 +65,7 @@ CATALOGUE: dict[str, str] = {
     "yaw_bent": "a compass that iron deviates",
     "yaw_constant": "yaw was not measured",
     "yaw_is_course": "yaw computed from positions",
-    "yaw_is_quaternion": "a component of a quaternion",
+    "yaw_is_quaternion": "a component of a quaternion, or its half angle",
     "yaw_unrelated": "yaw is no heading",
     "yaw_jumps": "yaw that jumps and stays",
     "pose_mirrored": "poses in a frame with z down (NED)",

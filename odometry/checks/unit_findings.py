@@ -3,11 +3,12 @@
 import numpy as np
 
 from odometry.bags.wheel_names import UNITS
-from odometry.checks.evidence import Evidence
+from odometry.checks.evidence import CLEARLY, Evidence
 from odometry.checks.finding import Finding, Level
+from odometry.checks.heading import CONSISTENT, headings
 from odometry.checks.motion import scattered
 from odometry.checks.relation import relation
-from odometry.checks.undo import gyroscope_times, treads_times
+from odometry.checks.undo import gyroscope_times, times, treads_times
 from odometry.checks.unit_tables import (
     EQUAL,
     ORDINARY_FORWARD,
@@ -38,6 +39,8 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         else "The gyroscope has a wrong scale (another unit, such as gradians, or full-scale range)"
     )
     remedy = "Convert gyro_z to rad/s"
+    if abs(np.log(factor) - np.log(2)) < HALF_ANGLE and (half := _half_yaw(evidence)):
+        return half
     if evidence.yaw_measured and abs(abs(np.log(factor)) - np.log(2)) < HALF_ANGLE:
         speed = "half" if factor > 1 else "twice"
         cause += f"; or stamps are those of a replay at {speed} the speed"
@@ -52,6 +55,25 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         cause,
         remedy,
         mend=gyroscope_times(evidence.run, 1 / factor),
+    )
+
+
+def _half_yaw(evidence: Evidence) -> Finding | None:
+    """Yaw that turns half as far as the gyroscope; None where twice the yaw is not the course."""
+    m = evidence.motion
+    turn = evidence.turn_rad(m)
+    found = [headings(of, turn).get("radians") for of in (m, m.with_yaw(lambda yaw: 2 * yaw))]
+    plain, doubled = (0.0 if of is None else of.concentration for of in found)
+    if doubled < CONSISTENT or doubled < plain + CLEARLY:
+        return None
+    return Finding(
+        "yaw_is_quaternion",
+        Level.WARNING,
+        "gyro_z turns twice as far as yaw of pose.csv, and twice this yaw agrees with the course "
+        f"(concentration {doubled:.2f}, as recorded {plain:.2f})",
+        "Yaw is half of the right one (the half angle of a quaternion, without its factor of 2)",
+        "Multiply yaw by 2",
+        mend=times("pose", 2.0, "yaw"),
     )
 
 

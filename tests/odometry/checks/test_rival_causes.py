@@ -187,3 +187,11 @@ def test_a_scale_of_the_treads_that_drifts_is_a_disagreement():
     assert scale_drifts(Evidence(run))
     assert "sensors_disagree" in warnings(run)
     assert not scale_drifts(Evidence(turning_all_round()))
+
+
+def test_yaw_that_is_half_accuses_no_gyroscope():
+    run = turning_all_round()
+    run = yaw(run, lambda angle: np.unwrap(angle) / 2)
+    (found,) = warnings(run).values()
+    assert found.name == "yaw_is_quaternion"
+    assert "half of the right one" in found.cause
