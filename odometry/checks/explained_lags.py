@@ -10,10 +10,11 @@ from odometry.checks.relation import Relation
 from odometry.checks.timing import timing
 
 OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
-ORDINARY = 0.9  # share of the windows: stops and gaps make outliers of the others
-# Share of what two sensors differ by that is left with other stamps: 0.72 at most where they were
-# late, 0.91 and more where yaw wanders or bends, or a gyroscope has a dead zone.
-LEFT = 0.8
+# Shares of the squares not explained, and of the mean difference in the nine tenths of the windows
+# that differ least (stops and gaps make outliers of the others), that are left with other stamps.
+# Where they were late one of both is below; where yaw wanders or bends, or a gyroscope has a dead
+# zone, they are 0.76 and 0.91, and more.
+LEFT, ORDINARY_LEFT, ORDINARY = 0.75, 0.8, 0.9
 DIFFER = 0.02  # share of the turns not explained, below which sensors agree
 
 
@@ -32,7 +33,8 @@ def _is_explained(evidence: Evidence, finding: Finding) -> bool:
         return True
     mended = Evidence(finding.mend(evidence.run), evidence.left_out_s)
     return any(
-        _ordinary_difference(after) < LEFT * _ordinary_difference(before)
+        1 - after.explained < LEFT * (1 - before.explained)
+        or _ordinary_difference(after) < ORDINARY_LEFT * _ordinary_difference(before)
         for before, after in zip(_relations(evidence), _relations(mended), strict=True)
         if before is not None and after is not None
     )
