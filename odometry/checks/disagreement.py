@@ -131,7 +131,7 @@ def yaw_against_course(evidence: Evidence) -> Iterator[Finding]:
     distance = evidence.distance_by_mean
     if distance is None or distance.correlation < 0.9 or distance.measured < 3 * LEAST_WINDOWS:
         return
-    if pose_sense(evidence) is not Sense.UNRELATED or turns_flip(evidence):
+    if pose_sense(evidence) is not Sense.UNRELATED:
         return
     if evidence.best_concentration is None or evidence.best_concentration > POOR:
         return
@@ -140,8 +140,8 @@ def yaw_against_course(evidence: Evidence) -> Iterator[Finding]:
         "distances of pose.csv agree with the treads (correlation "
         f"{distance.correlation:.2f}), but yaw points nowhere near the course (concentration "
         f"{evidence.best_concentration:.2f})",
-        "The column yaw holds something else than the heading (a component of a quaternion, "
-        "another axis, another unit)",
+        "The column yaw holds something else than the heading, all along or in a part (a component "
+        "of a quaternion, another axis, another unit, a bearing, an angle without its sign)",
         "Leave yaw empty, or convert it",
     )
 

@@ -27,7 +27,8 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
     if not known or all(s is Sense.AGREES for s in known):
         return
     if flips := turns_flip(evidence):
-        yield disagreement(flips)
+        if Sense.UNRELATED not in known:  # said with those elsewhere
+            yield disagreement(flips)
         return
     for tread in (Sense.LEFT_REVERSED, Sense.RIGHT_REVERSED):
         if set(known) == {tread}:
