@@ -64,10 +64,13 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
     together = by_gyroscope is not None and by_gyroscope.explained > POOR
     unrelated = Sense.UNRELATED
     if _is_magnitude(evidence):
+        swapped = "; or left and right treads are exchanged for a part of the recording"
         yield _finding(
             "gyroscope_unrelated",
-            "gyro_z is never negative, though the treads turn the robot to both sides",
-            "gyro_z holds the size of the turn rate: its sign was lost",
+            "gyro_z is never negative, though the "
+            f"{'poses' if evidence.yaw_measured else 'treads'} turn to both sides",
+            "gyro_z holds the size of the turn rate: its sign was lost"
+            + ("" if evidence.yaw_measured else swapped),
             "Log the yaw rate with its sign",
         )
     elif unrelated in (pose, gyroscope) and (flips := turns_flip(evidence)):
@@ -109,11 +112,12 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
 
 def _is_magnitude(evidence: Evidence) -> bool:
     """Whether a yaw rate is never negative, and as large in turns to one side as to the other."""
-    m = evidence.uniform
+    m = evidence.motion if evidence.yaw_measured else evidence.uniform
+    others = evidence.pose_turn_rad if evidence.yaw_measured else m.difference_m
     if evidence.yaw_rate is None or evidence.yaw_rate[1].min() < 0 or len(m) < LEAST_WINDOWS:
         return False
-    sharp_m = SHARP * np.quantile(np.abs(m.difference_m), 0.95)
-    sides = [m.gyroscope_rad[side * m.difference_m > sharp_m] for side in (-1, 1)]
+    sharp = SHARP * np.nanquantile(np.abs(others), 0.95)
+    sides = [m.gyroscope_rad[side * others > sharp] for side in (-1, 1)]
     if min(map(len, sides)) < LEAST_WINDOWS:
         return False
     middles = sorted(float(np.nanmedian(turns)) for turns in sides)

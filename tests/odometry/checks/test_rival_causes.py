@@ -195,3 +195,14 @@ def test_yaw_that_is_half_accuses_no_gyroscope():
     (found,) = warnings(run).values()
     assert found.name == "yaw_is_quaternion"
     assert "half of the right one" in found.cause
+
+
+def test_treads_exchanged_for_a_part_of_a_circle_look_like_a_lost_sign_without_poses():
+    run = drive(np.full(1600, 0.8), np.full(1600, 0.5))
+    late = second_part(run)
+    run = treads(
+        run, lambda left, right: (np.where(late, right, left), np.where(late, left, right))
+    )
+    assert "gyroscope_unrelated" not in warnings(run)
+    (found,) = warnings(replace(run, pose=None)).values()
+    assert "treads are exchanged for a part" in found.cause
