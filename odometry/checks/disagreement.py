@@ -114,13 +114,15 @@ def _is_magnitude(evidence: Evidence) -> bool:
     """Whether a yaw rate is never negative, and as large in turns to one side as to the other."""
     m = evidence.motion if evidence.yaw_measured else evidence.uniform
     others = evidence.pose_turn_rad if evidence.yaw_measured else m.difference_m
-    if evidence.yaw_rate is None or evidence.yaw_rate[1].min() < 0 or len(m) < LEAST_WINDOWS:
+    known = np.isfinite(others) & np.isfinite(m.gyroscope_rad)
+    if evidence.yaw_rate is None or evidence.yaw_rate[1].min() < 0 or not known.any():
         return False
-    sharp = SHARP * np.nanquantile(np.abs(others), 0.95)
-    sides = [m.gyroscope_rad[side * others > sharp] for side in (-1, 1)]
+    turns, others = m.gyroscope_rad[known], others[known]
+    sharp = SHARP * np.quantile(np.abs(others), 0.95)
+    sides = [turns[side * others > sharp] for side in (-1, 1)]
     if min(map(len, sides)) < LEAST_WINDOWS:
         return False
-    middles = sorted(float(np.nanmedian(turns)) for turns in sides)
+    middles = sorted(float(np.median(side)) for side in sides)
     return middles[0] > ALIKE * middles[1]
 
 
