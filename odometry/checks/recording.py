@@ -33,9 +33,10 @@ from odometry.checks.pose_values import pose_values
 from odometry.checks.poses import pose_outages, poses
 from odometry.checks.position_axes import position_axes
 from odometry.checks.proportion import proportion
+from odometry.checks.scale_change import scale_change
 from odometry.checks.settings import columns, settings
 from odometry.checks.settings_names import robot_sizes, settings_names
-from odometry.checks.sides import scale_change, sides
+from odometry.checks.sides import sides
 from odometry.checks.smoothed_poses import smoothed_poses
 from odometry.checks.stamp_pace import stamp_pace
 from odometry.checks.stamps import stamps, unreadable_stamps

@@ -1,17 +1,16 @@
-"""A tread that counts more than the other, an offset, a scale that changes, other columns."""
+"""A tread that counts more than the other, an offset, other columns."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.checks.constancy import groups_of_motion
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.motion import turns_both_ways
 from odometry.checks.relation import Relation, pieces, relation
 from odometry.checks.straight_drives import straight_drives
-from odometry.checks.undo import TREADS, Mend, changed, in_turn, treads_times
-from odometry.run import Run
+from odometry.checks.undo import Mend, changed, treads_times
 
 UNEQUAL = (
     1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
@@ -19,9 +18,15 @@ UNEQUAL = (
 LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations
 HELD = 0.9  # share of the turns explained where terrain holds
+ARM = 0.5  # of the way along: more than an arm of the sensor adds to one tread
 LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
 TOO_LITTLE = 1.1  # metres moved for each of the mean tread travel, which no slip makes
 TWIST = 0.15  # share of the turn that may come from the other column
+
+MIXED = (
+    "; or one column holds a part of the other tread (cross-talk): without a measured way along "
+    "these cannot be distinguished"
+)
 
 
 def sides(evidence: Evidence) -> Iterator[Finding]:
@@ -73,12 +78,21 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
         other = float(abs(forward.coefficients[0] / forward.coefficients[1]))
         if (other - 1) * (ratio - 1) < 0:
             return
+    along = forward.coefficients if forward is not None and forward.distinct else None
+    if along is not None and abs(along[0] / along.sum() - ratio / (1 + ratio)) > ARM:
+        yield disagreement(
+            f"a metre of the left tread turns the robot {ratio:.3g} times as much as one of the "
+            f"right, and has {100 * along[0] / along.sum():.0f} % of the way along"
+        )
+        return
     if not _lasts(evidence, ratio):
         yield disagreement(
             f"a metre of the left tread turns the robot {ratio:.3g} times as much as one of the "
-            "right, but not all the time"
+            "right, but not all the time, or not at each speed and in each direction"
         )
         return
+    sure = forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES)
+    mixed = "" if sure else MIXED
     side = "right" if ratio > 1 else "left"
     yield Finding(
         "treads_unequal",
@@ -86,7 +100,7 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
         f"a metre of the left tread turns the robot by {left:.3g} rad, one of the right by "
         f"{right:.3g} rad",
         f"One side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} times too "
-        "much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre)",
+        f"much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre){mixed}",
         "Compare both sides on a straight drive",
         mend=_as_the_other(evidence, ratio),
     )
@@ -100,13 +114,18 @@ def _as_the_other(evidence: Evidence, ratio: float) -> Mend:
 
 
 def _lasts(evidence: Evidence, ratio: float) -> bool:
-    """Whether each piece of the recording with enough motion has the ratio of the whole."""
+    """Whether each part of the recording with enough motion has the ratio of the whole.
+
+    Parts are of time, of slow and fast motion, forwards and backwards, left and right turns.
+    """
     m, turns = evidence.uniform, evidence.uniform.gyroscope_rad
     if evidence.gyroscope_by_treads is None:
         m, turns = evidence.turn_motion, evidence.pose_turn_rad
+    parts = (np.where(rows, turns, np.nan) for _, *both in groups_of_motion(m) for rows in both)
+    fits = [relation(of_part, m.left_m, m.right_m) for of_part in parts]
     ratios = [
         abs(float(piece.coefficients[0] / piece.coefficients[1]))
-        for piece in pieces(turns, m.left_m, m.right_m)
+        for piece in [*pieces(turns, m.left_m, m.right_m), *filter(None, fits)]
         if piece.certain(0, TIMES) and piece.certain(1, TIMES)
     ]
     return all(np.log(of) / np.log(ratio) > LASTING for of in ratios)
@@ -148,91 +167,3 @@ def _reads_zero(evidence: Evidence) -> bool:
     """Whether both treads read exactly zero at times: then neither has an offset."""
     still = (evidence.speeds_m_s == 0).all(axis=1)
     return bool(still.sum() * evidence.period_s > 1.0)
-
-
-CHANGED = 1.4  # ratio of what a metre moves; in 23 real recordings along and in turns at most 1.3
-ALIKE = 0.35  # share of that change, as a logarithm, by which the change in turns may differ
-HELD_CHANGE = 0.9  # correlation in each part: on terrain that slips a factor is not constant
-CERTAIN = 8.0  # standard deviations
-LEAST_SHARE = 0.1  # of the way on each side of the moment
-LEAST_WINDOWS = 15
-
-
-def scale_change(evidence: Evidence) -> Iterator[Finding]:
-    """One factor between the motion before and after a moment, along the way and in turns.
-
-    A change of terrain changes turns and not the way along, or slips by no constant factor.
-    """
-    m = evidence.motion
-    moment_s = _moment_s(m.start_s, evidence.forward_m, m.mean_m)
-    if moment_s is None:
-        return
-    along = _before_and_after(moment_s, m.end_s, m.start_s, evidence.forward_m, m.mean_m)
-    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
-    if evidence.yaw_rate is None:
-        turns, of = evidence.pose_turn_rad, evidence.turn_motion
-    across = _before_and_after(moment_s, of.end_s, of.start_s, turns, of.difference_m)
-    if along is None or across is None:
-        return
-    factor, in_turns = (after.slope / before.slope for before, after in (along, across))
-    if factor <= 0 or in_turns <= 0 or abs(np.log(factor)) < np.log(CHANGED):
-        return
-    if abs(np.log(in_turns / factor)) > ALIKE * abs(np.log(factor)):
-        return
-    at_s = evidence.run_time_s(moment_s)
-    yield Finding(
-        "tread_scale_changed",
-        Level.WARNING,
-        f"a metre of tread travel moves the robot by {along[0].slope:.3g} m before {at_s:.0f} s "
-        f"and by {along[1].slope:.3g} m after, and turns change by the same factor",
-        "The scale of the tread speeds changes while recording (unit, gear, wheel radius or "
-        "settings of the driver); slip changes turns and the way along by different factors",
-        f"Cut the recording at {at_s:.0f} s, and correct the scale of the part that is wrong",
-        spans_s=((at_s, at_s),),
-        mend=_as_before(moment_s, factor),
-    )
-
-
-def _moment_s(start_s: FloatArray, forward_m: FloatArray, travel_m: FloatArray) -> float | None:
-    """The moment at which two factors explain most more than one does."""
-    known = np.isfinite(forward_m) & np.isfinite(travel_m)
-    if known.sum() < 2 * LEAST_WINDOWS:
-        return None
-    stamps_s, forward_m, travel_m = start_s[known], forward_m[known], travel_m[known]
-    products, squares = np.cumsum(forward_m * travel_m), np.cumsum(travel_m**2)
-    way = np.cumsum(np.abs(forward_m))
-    share = way / max(way[-1], 1e-300)
-    rows = np.flatnonzero((share > LEAST_SHARE) & (share < 1 - LEAST_SHARE))
-    if not len(rows):
-        return None
-    left = np.maximum(squares[-1] - squares[rows], 1e-300)  # treads may read zero on one side
-    later = (products[-1] - products[rows]) ** 2 / left
-    explained = products[rows] ** 2 / np.maximum(squares[rows], 1e-300) + later
-    return float(stamps_s[rows[np.argmax(explained)] + 1])
-
-
-def _before_and_after(
-    moment_s: float, end_s: FloatArray, start_s: FloatArray, target: FloatArray, by: FloatArray
-) -> tuple[Relation, Relation] | None:
-    """The factor before and after a moment; None where one of them is not certain and constant."""
-    parts = [relation(target[rows], by[rows]) for rows in (end_s <= moment_s, start_s >= moment_s)]
-    before, after = parts
-    if before is None or after is None:
-        return None
-    sure = all(
-        part.certain(0, CERTAIN)
-        and part.correlation > HELD_CHANGE
-        and part.measured >= LEAST_WINDOWS
-        for part in (before, after)
-    )
-    return (before, after) if sure else None
-
-
-def _as_before(moment_s: float, factor: float) -> Mend:
-    """Tread speeds from a moment on in the scale that they had before it."""
-
-    def mend(run: Run) -> Run:
-        scale = np.where(run.odometry.stamps_s >= moment_s, factor, 1.0)
-        return in_turn(*(changed("odometry", name, lambda v: scale * v) for name in TREADS))(run)
-
-    return mend

@@ -96,12 +96,15 @@ def too_fast(evidence: Evidence) -> Finding:
     )
 
 
-def tread_unit(seen: str, unit: Unit, evidence: Evidence, *others: str) -> Finding:
+def tread_unit(
+    seen: str, unit: Unit, evidence: Evidence, *others: str, measured: float | None = None
+) -> Finding:
     """Tread speeds in another unit, and what else the factor may be, the likeliest first."""
     words = as_likely(unit, evidence.run.robot.wheel_radius, evidence.period_s)
     words = [*(words or [f"in {unit.words}"]), *others]
     if 1 / 4 < unit.factor < 4:
-        words.append(f"scaled by {unit.factor:.2g} (gear ratio)")
+        factor = ORDINARY_FORWARD * (measured or unit.factor)
+        words.append(f"scaled by {factor:.2g} (gear ratio, wheels of another radius)")
     several = ": these cannot be distinguished" if len(words) > 1 else ""
     return Finding(
         "tread_unit",

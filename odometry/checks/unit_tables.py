@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 ORDINARY_FORWARD = 0.93  # metres that a robot moves for each metre of tread travel
+# Least share of its way that a robot moves which slips, and one that moves farther than it should.
+SLIPS, HOLDS = 0.45, 0.8
 RADII_M = (0.04, 0.6)  # of wheels
 
 
@@ -52,14 +54,18 @@ POSITION_UNITS = (
 
 
 def matching(
-    candidates: tuple[Unit, ...], ratio: Callable[[Unit], float], most: float = 1.2
+    candidates: tuple[Unit, ...],
+    ratio: Callable[[Unit], float],
+    least: float = SLIPS,
+    most: float = 1.2,
 ) -> Unit | None:
     """The unit that brings a ratio nearest to the ordinary one, if near enough.
 
-    A rare unit may lie farther off, up to `most`: no robot goes much farther than its treads.
+    A rare unit may lie farther off, up to `most`: no robot goes much farther than its treads. Slip
+    may bring it down to `least`.
     """
     near = min(candidates, key=lambda unit: abs(np.log(ratio(unit) / ORDINARY_FORWARD)))
-    low, high = (0.45, most) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
+    low, high = (least, most) if not 1 / 50 < near.factor < 50 else (0.7, 1.15)
     return near if low <= ratio(near) <= high else None
 
 

@@ -1,0 +1,110 @@
+"""Whether a factor is the same at each speed, direction and place, as a scale is."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.evidence import Evidence
+from odometry.checks.motion import Motion
+from odometry.checks.relation import Relation, relation
+
+MOVING = 0.1  # of the ordinary fastest window
+STRAIGHT = 0.3  # share of the mean by which both treads differ at most
+LEAST_WINDOWS = 12  # of each group that is compared
+CERTAIN = 3.0  # standard deviations
+SHARE = 0.35  # of the logarithm of a factor: what it may differ by between groups
+LIKE = (1.1, 1.3)  # ratio of factors: slip leaves the smaller one, above the larger one is no scale
+TURNS_LIKE = 1.22  # the same of turns, on the straight and elsewhere, slow and fast
+Groups = Iterator[tuple[tuple[str, str], BoolArray, BoolArray]]
+
+
+def uneven_way(evidence: Evidence, factor: float) -> str:
+    """Where the treads are no constant `factor` of the measured motion; "" where they may be.
+
+    Real robots keep the factor of their turns less than that of their way: it is compared on
+    straight lines and in turns, slow and fast alone.
+    """
+    m, forward_m, mean_m = evidence.motion, evidence.forward_m, evidence.motion.mean_m
+    if evidence.heading is None:
+        forward_m, mean_m = m.distance_m, np.abs(mean_m)
+    most = ratio_left(factor)
+    along = _uneven(_of_way(m), forward_m, mean_m, most=most)
+    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
+    if evidence.yaw_rate is None:
+        turns, of = evidence.pose_turn_rad, evidence.turn_motion
+    across = _uneven(_of_turns(of), turns, of.difference_m, of.lasts_s, most=TURNS_LIKE)
+    if along:
+        return f"a metre of tread travel moves the robot by {along}"
+    return f"a metre by which the treads differ turns the robot by {across}" if across else ""
+
+
+def uneven_gyroscope(evidence: Evidence, factor: float) -> str:
+    """Where the gyroscope is no constant `factor` of the measured turns; "" where it may be."""
+    m = evidence.turn_motion
+    fits = evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s
+    found = _uneven(_of_way(m), *fits, most=ratio_left(factor))
+    return f"a radian of the gyroscope is one of the poses times {found}" if found else ""
+
+
+def ratio_left(factor: float) -> float:
+    """By what ratio a constant factor may differ between groups of windows."""
+    return float(np.clip(np.exp(SHARE * abs(np.log(factor))), *LIKE))
+
+
+def _uneven(groups: Groups, target: FloatArray, *columns: FloatArray, most: float) -> str:
+    """Two groups of windows whose factors of the first column surely differ by more than `most`."""
+    for words, one, other in groups:
+        first, second = (_fit(rows, target, *columns) for rows in (one, other))
+        if first is None or second is None:
+            continue
+        unsure = np.sqrt(sum((fit.slope_sigma / fit.slope) ** 2 for fit in (first, second)))
+        if abs(np.log(abs(first.slope / second.slope))) > np.log(most) + CERTAIN * unsure:
+            return f"{abs(first.slope):.3g} {words[0]} and by {abs(second.slope):.3g} {words[1]}"
+    return ""
+
+
+def _fit(rows: BoolArray, target: FloatArray, *columns: FloatArray) -> Relation | None:
+    fit = relation(np.where(rows, target, np.nan), *columns)
+    sure = fit is not None and fit.measured >= LEAST_WINDOWS and fit.certain()
+    return fit if sure else None
+
+
+def groups_of_motion(motion: Motion) -> Groups:
+    """Names and windows (K,) of slow and fast motion, forwards and backwards, left and right."""
+    fast, moving = _fast(motion)
+    yield ("at low speed", "at high speed"), moving & ~fast, moving & fast
+    forwards = motion.mean_m > 0
+    yield ("forwards", "backwards"), moving & forwards, moving & ~forwards
+    left = motion.difference_m > 0
+    yield ("in left turns", "in right turns"), moving & left, moving & ~left
+
+
+def _of_way(motion: Motion) -> Groups:
+    yield from groups_of_motion(motion)
+    _, moving = _fast(motion)
+    for degrees in (0, 45):
+        along = np.cos(2 * (motion.course_rad - np.radians(degrees))) > 0
+        yield (f"along {degrees} degrees of the map", "across"), moving & along, moving & ~along
+    place = np.nancumsum(motion.moved_m, axis=0)
+    for words, at in (
+        (("at small x", "at large x"), place[:, 0]),
+        (("at small y", "at large y"), place[:, 1]),
+        (("near its start", "far from it"), np.hypot(*place.T)),
+    ):
+        near = at < np.median(at)
+        yield words, moving & near, moving & ~near
+
+
+def _of_turns(motion: Motion) -> Groups:
+    fast, moving = _fast(motion)
+    yield ("at low speed", "at high speed"), moving & ~fast, moving & fast
+    straight = np.abs(motion.difference_m) < STRAIGHT * np.abs(motion.mean_m)
+    yield ("on straight lines", "in turns"), moving & straight, moving & ~straight
+
+
+def _fast(motion: Motion) -> tuple[BoolArray, BoolArray]:
+    """Windows (K,) that are faster than half of those that move, and those that move."""
+    faster = np.maximum(np.abs(motion.left_m), np.abs(motion.right_m)) / motion.lasts_s
+    moving = faster > MOVING * np.quantile(faster, 0.95)
+    return faster > np.median(faster[moving]), moving
