@@ -9,6 +9,8 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.motion import Integrals, Motion, integrals, motion_between, scattered
 from odometry.checks.outliers import pose_outliers, without_spikes
 from odometry.run import Run
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.spans import touched
 
 LONGER_S = (1.0, 2.0)  # windows
 MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
@@ -122,8 +124,10 @@ class CleanedRecording:
 
     @cached_property
     def uniform(self) -> Motion:
-        """Windows of half a second over the whole of odometry.csv, without poses."""
-        return self._without_left_out(motion_between(self.run, self.integrals, None))
+        """Windows of half a second over odometry.csv but for its gaps, without poses."""
+        found = motion_between(self.run, self.integrals, None)
+        lost = touched(odometry_gaps(self.run).spans_s, found.start_s, found.end_s)
+        return self._without_left_out(found.rows(np.flatnonzero(~lost)))
 
     def _without_left_out(self, motion: Motion) -> Motion:
         return motion.rows(np.flatnonzero(~self.left_out(motion.start_s, motion.end_s)))

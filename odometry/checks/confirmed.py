@@ -10,15 +10,16 @@ from odometry.checks.undo import Mend, between, in_turn
 from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
+LOST = "stuck_encoder"  # its time is left out: what then differs was not of the tread
 AROUND_S = 2.0  # of such a moment that is left out
 LEAST_S = 15.0  # of a part between two cuts
 HALF = 0.5  # of the recording, that parts are at least: with more cuts it is compared whole
 MOST_PARTS = 6  # the longest ones are compared
 # Sensors of different times seem to slip, to jump and to be far from the centre; one side of
-# another scale seems to scale the way.
+# another scale seems to scale the way; treads seem to stand where their scale is another elsewhere.
 TRIED_ALONE = frozenset(
     {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
-    | {"treads_unequal"}
+    | {"treads_unequal", "tread_scale_changed"}
 )
 
 Found = Callable[[Evidence], list[Finding]]
@@ -60,7 +61,8 @@ def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list
     jumps = [finding for finding in warnings if finding.name in MOMENTS]
     others = [f for f in warnings if f not in causes and f not in jumps]
     spans = tuple(span for finding in others for span in finding.spans_s)
-    if not causes and not jumps:
+    lost = [finding for finding in others if finding.name == LOST]
+    if not causes and not jumps and not lost:
         return list(found)
     mends: list[Mend] = [finding.mend for finding in causes if finding.mend is not None]
     cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
@@ -71,7 +73,7 @@ def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list
     only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
     if only is not None:
         return [only, *_notes(found)]
-    return _unnamed(found, [*causes, *jumps], left) if left else list(found)
+    return _unnamed(found, [*causes, *jumps, *lost], left) if left else list(found)
 
 
 def _warnings(found: Iterable[Finding]) -> list[Finding]:

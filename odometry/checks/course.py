@@ -13,6 +13,7 @@ from odometry.checks.undo import Mend, changed, times, yaw_plus
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
 LEAST_FORWARDS = 0.5
+NEAR_90 = 5.0  # degrees: farther off, a sensor may be turned by another angle
 
 
 def course(evidence: Evidence) -> Iterator[Finding]:
@@ -83,7 +84,8 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             "yaw_off_by_90",
             seen,
             f"Yaw is off by {round(degrees / 90) * 90:.0f} degrees (another axis is called "
-            f"forward, yaw counts from another axis, or x and y are swapped){_as_well(evidence)}",
+            f"forward, yaw counts from another axis, or x and y are swapped)"
+            f"{_or_turned(degrees)}{_as_well(evidence)}",
             f"Add {np.sign(degrees) * np.pi / 2:+.4f} rad to yaw",
             yaw_plus(offset),
         )
@@ -97,6 +99,11 @@ def _offset(evidence: Evidence, heading: Heading) -> Iterator[Finding]:
             f"Add {offset:+.4f} rad to yaw, or let `gap` name a heading_offset",
             yaw_plus(offset),
         )
+
+
+def _or_turned(degrees: float) -> str:
+    off = abs(abs(degrees) - 90) > NEAR_90
+    return f"; or the sensor is turned by {degrees:.0f} degrees on the robot" if off else ""
 
 
 def _as_well(evidence: Evidence) -> str:

@@ -115,6 +115,8 @@ def pose_late(lag: Lag, other: str, *, gyroscope: bool = True) -> Finding:
         more = f"; or those of the treads are {opposite}: {without} this cannot be determined"
         if lag.seconds > 0:
             more += " (v_left and v_right may be commands, which the robot follows later)"
+    elif lag.seconds < 0:
+        more = "; or treads and gyroscope are both late by as much"
     return Finding(
         "pose_late",
         Level.WARNING,
@@ -166,6 +168,7 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> 
     kind, mend = commands_or_stamps(evidence, -lag.seconds)
     if kind == "stamps":
         delayed = "; or they are commands on which the robot acts so much later"
+        delayed += "; or gyroscope and poses are both late by as much" if decided else ""
         return _treads("treads_late", lag, other, f"{cause}{delayed}{undecided}", mend)
     either = "; or their stamps are early: these cannot be distinguished"
     more = "" if kind == "commands" else either

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.constancy import uneven_way
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.relation import Relation, relation
 from odometry.checks.undo import TREADS, Mend, changed, in_turn
 from odometry.run import Run
@@ -40,7 +41,13 @@ def scale_change(evidence: Evidence) -> Iterator[Finding]:
         return
     if abs(np.log(in_turns / factor)) > ALIKE * abs(np.log(factor)):
         return
-    at_s = evidence.run_time_s(moment_s)
+    at_s, mend = evidence.run_time_s(moment_s), _as_before(moment_s, factor)
+    if uneven := uneven_way(Evidence(mend(evidence.run), evidence.left_out_s), factor):
+        yield disagreement(
+            f"a metre of tread travel moves the robot by {along[0].slope:.3g} m before "
+            f"{at_s:.0f} s and by {along[1].slope:.3g} m after; but with both made equal {uneven}"
+        )
+        return
     yield Finding(
         "tread_scale_changed",
         Level.WARNING,
@@ -50,7 +57,7 @@ def scale_change(evidence: Evidence) -> Iterator[Finding]:
         "settings of the driver); slip changes turns and the way along by different factors",
         f"Cut the recording at {at_s:.0f} s, and correct the scale of the part that is wrong",
         spans_s=((at_s, at_s),),
-        mend=_as_before(moment_s, factor),
+        mend=mend,
     )
 
 

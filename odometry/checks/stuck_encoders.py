@@ -20,36 +20,65 @@ CONTRADICTED = 5.0  # times the usual residual
 OFF = 0.1  # of the ordinary fastest speed, by which the tread is wrong at least
 CORRELATED = 0.8  # that the motion elsewhere goes with the treads
 LEAST_WINDOWS = 4
+HALF = 0.5  # share of the windows of a span from which a sensor agrees with the treads
 OFTEN = 0.4  # share of the windows of such a time, of a value that the tread passes now and then
 RARELY = 3.0  # times more often within such a time than elsewhere
 PIVOTS = 0.8  # share of the turns that the other tread explains where the robot turns about one
 LEAST_ROWS = 20  # windows
+LEAST = 0.01  # of the values that are not zero: the slowest that is read
+BAND = 0.1  # of the fastest value: from where no slower one is read
 SHOWN = 3  # times of which begin and end are printed
 
 
 def stuck_encoders(evidence: Evidence) -> Iterator[Finding]:
     """A tread that keeps one value while gyroscope or poses say that it goes on differently."""
+    dead = [_is_dead(evidence, side) for side in range(2)]
+    spans = [
+        []
+        if dead[side]
+        else [s for k in _kept(evidence, side) for s in _contradicted(evidence, k, side)]
+        for side in range(2)
+    ]
     for side, name in enumerate(("v_left", "v_right")):
-        if _is_dead(evidence, side):
+        if dead[side]:
             yield _dead(evidence, name)
-            continue
-        spans = [s for span in _kept(evidence, side) for s in _contradicted(evidence, span, side)]
-        if not spans:
-            continue
-        row = int(np.searchsorted(evidence.stamps_s, spans[0][0]))
-        in_run_time = [(evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans]
-        times = ", ".join(f"from {b:.1f} to {e:.1f} s" for b, e in in_run_time[:SHOWN])
-        more = " ..." if len(spans) > SHOWN else ""
-        tread = name.removeprefix("v_")
-        yield Finding(
-            "stuck_encoder",
-            Level.WARNING,
-            f"{name} stays at {evidence.speeds_m_s[row, side]:.4g} m/s {times}{more} of run time, "
-            "while gyroscope or poses say that this tread goes on differently",
-            f"The encoder of the {tread} tread is stuck or was lost",
-            "Cut the recording with --from and --to, or leave it out",
-            tuple(in_run_time),
-        )
+        elif spans[side]:
+            yield _stuck(evidence, name, spans[side], both=all(spans))
+
+
+def _stuck(
+    evidence: Evidence, name: str, spans: list[tuple[float, float]], *, both: bool
+) -> Finding:
+    """A tread that is lost at times; `both` where the other one is as well, at other times."""
+    row = int(np.searchsorted(evidence.stamps_s, spans[0][0]))
+    values = evidence.speeds_m_s[:, ("v_left", "v_right").index(name)]
+    in_run_time = [(evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans]
+    times = ", ".join(f"from {b:.1f} to {e:.1f} s" for b, e in in_run_time[:SHOWN])
+    more = " ..." if len(spans) > SHOWN else ""
+    return Finding(
+        "stuck_encoder",
+        Level.WARNING,
+        f"{name} stays at {values[row]:.4g} m/s {times}{more} of run time, "
+        "while gyroscope or poses say that this tread goes on differently",
+        f"The encoder of the {name.removeprefix('v_')} tread is stuck or was lost"
+        + _or_limited(values, float(values[row]), both=both),
+        "Cut the recording with --from and --to, or leave it out",
+        tuple(in_run_time),
+    )
+
+
+def _or_limited(values: FloatArray, kept: float, *, both: bool) -> str:
+    """What else keeps a value: a limit of the speeds that are read."""
+    least = float(np.quantile(np.abs(values[values != 0]), LEAST)) if values.any() else 0.0
+    if kept in (values.max(), values.min()) and kept != 0:
+        other = f"it is clipped at {kept:.4g} m/s, its largest value"
+    elif kept == 0 and least > BAND * np.abs(values).max():
+        other = f"slow speeds read zero (a dead band): it has none between 0 and {least:.2g} m/s"
+    elif both and abs(kept) < STANDING * np.abs(values).max():
+        other = "slow speeds read zero (a dead band, play of the gear): both treads have such times"
+    else:
+        return ""
+    return f"; or {other}. These cannot be distinguished"
 
 
 def _is_dead(evidence: Evidence, side: int) -> bool:
@@ -114,12 +143,15 @@ def _is_a_gap(evidence: Evidence, span: FloatArray) -> bool:
 
 
 def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> list[tuple[float, float]]:
-    """From when to when what a sensor measures is far from what the treads say; [] where never."""
-    for measured in _measured(evidence):
-        found = measured.contradicts(evidence.fastest_m_s, span, side)
-        if found is not None:
-            return [found]
-    return []
+    """From when to when what a sensor measures is far from what the treads say; [] where never.
+
+    Where the gyroscope and the poses part, one of these is at fault.
+    """
+    sensors = list(_measured(evidence))
+    if any(measured.agrees(evidence.fastest_m_s, span, side) for measured in sensors):
+        return []
+    found = (measured.contradicts(evidence.fastest_m_s, span, side) for measured in sensors)
+    return [first for first in found if first is not None][:1]
 
 
 @dataclass(frozen=True)
@@ -128,6 +160,17 @@ class _Measured:
 
     motion: Motion
     target: FloatArray
+
+    def agrees(self, fastest_m_s: float, span: FloatArray, side: int) -> bool:
+        """Whether most windows in a span are those that the treads say, noise or not."""
+        m, treads = self.motion, np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
+        inside = (m.start_s >= span[0]) & (m.end_s <= span[1]) & np.isfinite(self.target)
+        fit = relation(np.where(inside, np.nan, self.target), *treads.T)
+        if fit is None or inside.sum() < LEAST_WINDOWS:
+            return False
+        off = np.abs(self.target - treads @ fit.coefficients)
+        near = off < OFF * abs(fit.coefficients[side]) * fastest_m_s * m.lasts_s
+        return bool(np.mean(near[inside]) > HALF)
 
     def contradicts(
         self, fastest_m_s: float, span: FloatArray, side: int

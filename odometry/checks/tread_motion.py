@@ -17,7 +17,7 @@ CONTRADICTED = 5.0  # times the usual residual
 SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit to all of them
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 OTHERWISE = 0.7  # of the motion by which it differs: on another terrain it does by a half
-SPEEDS = 0.8  # share of a motion that columns explain which are speeds
+SPEEDS = 0.5  # share of a motion from which columns that explain it are speeds
 SHOWN = 3  # times of which begin and end are printed
 LOST = (
     "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that stopped)"
@@ -143,11 +143,11 @@ def is_read(evidence: Evidence, span: FloatArray) -> bool:
 
 
 def _counters(evidence: Evidence) -> Iterator[Finding]:
-    """Columns whose changes, not whose values, are the motion."""
+    """Columns whose changes, not whose values, are the motion that each sensor measures."""
     targets = list(_targets(evidence))
-    if any(plain is not None and plain.explained > SPEEDS for _, _, plain in targets):
+    if any(plain is not None and plain.explained > SPEEDS for *_, plain in targets):
         return  # a gyroscope that holds the change of the turn rate makes counters of speeds
-    for motion, target, plain in targets:
+    for motion, target, _ in targets:
         rows = [
             np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
             for at_s in (motion.start_s, motion.end_s)
@@ -156,14 +156,13 @@ def _counters(evidence: Evidence) -> Iterator[Finding]:
         changed = relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
         if changed is None or changed.explained < 0.8:
             continue
-        if plain is None or plain.explained < 0.5:
-            yield Finding(
-                "treads_are_counters",
-                Level.WARNING,
-                f"changes of v_left and v_right explain {100 * changed.explained:.0f} % of the "
-                "motion, their values do not",
-                "The columns hold counters: positions or angles of the wheels (an odometer, "
-                "encoder ticks), not speeds",
-                "Differentiate them by t, and convert to m/s",
-            )
-            return
+        yield Finding(
+            "treads_are_counters",
+            Level.WARNING,
+            f"changes of v_left and v_right explain {100 * changed.explained:.0f} % of the "
+            "motion, their values do not",
+            "The columns hold counters: positions or angles of the wheels (an odometer, "
+            "encoder ticks), not speeds",
+            "Differentiate them by t, and convert to m/s",
+        )
+        return

@@ -12,7 +12,7 @@ from odometry.checks.treads import step_of
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 STOP_S = 0.3  # no robot stops and is at full speed again within
 STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
-LEAST_SAME, SAME = 8, 0.5  # rows of one value, and their share of all that are alone
+LEAST_SAME, SAME = 8, 0.5  # rows of one value, their share of all that are alone and of that value
 
 
 def tread_samples(evidence: Evidence) -> Iterator[Finding]:
@@ -86,6 +86,8 @@ def _placeholders(evidence: Evidence) -> Iterator[Finding]:
         if not len(found) or counts.max() < max(LEAST_SAME, SAME * alone.sum()):
             continue
         value = found[np.argmax(counts)]
+        if counts.max() < SAME * np.sum(values == value):
+            continue  # a speed that lasts elsewhere
         rows = np.flatnonzero(alone & (here == value)) + 1
         seen.append(f"{name} is {value:.6g} m/s in {counted(len(rows), 'row')}")
         spans += [(evidence.run_time_s(s),) * 2 for s in stamps_s[rows]]

@@ -132,6 +132,8 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
             "pose.csv is in a frame with z down (NED, or x and y swapped and yaw with them): "
             "its yaw and its course agree with each other"
         )
+        if gyroscope_sense(evidence) is Sense.AGREES:
+            cause += "; or left and right treads are swapped, and gyro_z has the wrong sign"
     if not alone:
         cause += ", or left and right treads are swapped"
         if not evidence.yaw_measured:

@@ -27,6 +27,8 @@ HALF_ANGLE = 0.07  # the same, by 2
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
 
 
+WATCH = ", if that is it: compare with a turn by hand, and the duration with a watch"
+AS_MUCH = 0.1  # logarithm by which the way of the treads may be off the ordinary one by the factor
 SLIP_OR_TRACK = "there is heavy slip in turns (snow), or a wrong track_width"
 
 
@@ -46,7 +48,13 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         cause += f"; or stamps are those of a replay at {speed} the speed"
         if factor > 1:
             cause += "; or yaw is half of the right one (of a quaternion, without its factor of 2)"
-        remedy += ", if that is it: compare with a turn by hand, and the duration with a watch"
+        remedy += WATCH
+    elif not degrees and _treads_as_well(evidence, factor):
+        cause += (
+            f"; or stamps are those of a replay at {1 / factor:.2g} times the speed: the treads "
+        )
+        cause += "are too fast by as much" if factor > 1 else "are too slow by as much"
+        remedy += WATCH
     return Finding(
         "gyroscope_unit",
         Level.WARNING,
@@ -75,6 +83,14 @@ def _half_yaw(evidence: Evidence) -> Finding | None:
         "Multiply yaw by 2",
         mend=times("pose", 2.0, "yaw"),
     )
+
+
+def _treads_as_well(evidence: Evidence, factor: float) -> bool:
+    """Whether the treads travel too far by the same factor: they and the gyroscope share stamps."""
+    forward = evidence.metres_per_metre
+    if not evidence.yaw_measured or forward is None:
+        return False
+    return bool(abs(np.log(forward * factor / ORDINARY_FORWARD)) < AS_MUCH)
 
 
 def too_fast(evidence: Evidence) -> Finding:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence import Evidence
-from odometry.checks.sides import scale_change
+from odometry.checks.scale_change import scale_change
 from odometry.checks.undo import changed, in_turn
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
 
