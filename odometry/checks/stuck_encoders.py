@@ -148,10 +148,14 @@ def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> list[tuple
     Where the gyroscope and the poses part, one of these is at fault.
     """
     sensors = list(_measured(evidence))
-    if any(measured.agrees(evidence.fastest_m_s, span, side) for measured in sensors):
-        return []
-    found = (measured.contradicts(evidence.fastest_m_s, span, side) for measured in sensors)
-    return [first for first in found if first is not None][:1]
+    for measured in sensors:
+        found = measured.contradicts(evidence.fastest_m_s, span, side)
+        if found is None:
+            continue
+        others = (sensor for sensor in sensors if sensor is not measured)
+        agrees = any(other.agrees(evidence.fastest_m_s, found, side) for other in others)
+        return [] if agrees else [found]
+    return []
 
 
 @dataclass(frozen=True)
@@ -161,16 +165,29 @@ class _Measured:
     motion: Motion
     target: FloatArray
 
-    def agrees(self, fastest_m_s: float, span: FloatArray, side: int) -> bool:
+    def agrees(self, fastest_m_s: float, span: tuple[float, float], side: int) -> bool:
         """Whether most windows in a span are those that the treads say, noise or not."""
-        m, treads = self.motion, np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
-        inside = (m.start_s >= span[0]) & (m.end_s <= span[1]) & np.isfinite(self.target)
+        treads = self._treads_m
+        inside = self._moving(fastest_m_s) & self._within(span)
         fit = relation(np.where(inside, np.nan, self.target), *treads.T)
         if fit is None or inside.sum() < LEAST_WINDOWS:
             return False
         off = np.abs(self.target - treads @ fit.coefficients)
-        near = off < OFF * abs(fit.coefficients[side]) * fastest_m_s * m.lasts_s
+        near = off < OFF * abs(fit.coefficients[side]) * fastest_m_s * self.motion.lasts_s
         return bool(np.mean(near[inside]) > HALF)
+
+    @property
+    def _treads_m(self) -> FloatArray:
+        return np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
+
+    def _moving(self, fastest_m_s: float) -> BoolArray:
+        """Windows (K,) that were measured and in which a tread moves."""
+        fast = np.abs(self._treads_m).max(axis=1) > MOVING * fastest_m_s * self.motion.lasts_s
+        return np.asarray(np.isfinite(self.target) & fast)
+
+    def _within(self, span: FloatArray | tuple[float, float]) -> BoolArray:
+        begun, ended = self.motion.start_s >= span[0], self.motion.end_s <= span[1]
+        return np.asarray(begun & ended)
 
     def contradicts(
         self, fastest_m_s: float, span: FloatArray, side: int
@@ -180,10 +197,9 @@ class _Measured:
         The relation of treads and sensor is that of all windows outside. Windows at rest say
         nothing: the tread may have stood before it was lost.
         """
-        m, treads = self.motion, np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
-        way_m = fastest_m_s * m.lasts_s
-        moving = np.isfinite(self.target) & (np.abs(treads).max(axis=1) > MOVING * way_m)
-        inside = moving & (m.start_s >= span[0]) & (m.end_s <= span[1])
+        m, treads, way_m = self.motion, self._treads_m, fastest_m_s * self.motion.lasts_s
+        moving = self._moving(fastest_m_s)
+        inside = moving & self._within(span)
         outside = (m.end_s <= span[0]) | (m.start_s >= span[1])
         if inside.sum() < LEAST_WINDOWS or (outside & moving).sum() < LEAST_WINDOWS:
             return None

@@ -122,8 +122,9 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
 
 
 def _holds(by_gyroscope: Relation) -> bool:
-    """Whether measured turns go with those of the gyroscope, but for a few that are outliers."""
-    few = by_gyroscope.kept.sum() > MOST * by_gyroscope.measured
+    """Whether measured turns go with those of the gyroscope; far from it, but for outliers."""
+    far = not 1 / EXTREME < abs(by_gyroscope.slope) < EXTREME
+    few = far and by_gyroscope.kept.sum() > MOST * by_gyroscope.measured
     return by_gyroscope.explained > TIGHT or bool(few and by_gyroscope.correlation > CLOSELY)
 
 
