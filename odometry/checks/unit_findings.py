@@ -51,8 +51,8 @@ def gyroscope_unit(evidence: Evidence, factor: float) -> Finding:
         remedy += WATCH
     elif not degrees and _treads_as_well(evidence, factor):
         cause += (
-            f"; or stamps are those of a replay at {1 / factor:.2g} times the speed: the treads are "
-            "off by as much"
+            f"; or stamps are those of a replay at {1 / factor:.2g} times the speed: the treads "
+            "are off by as much"
         )
         remedy += WATCH
     return Finding(

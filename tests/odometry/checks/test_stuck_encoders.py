@@ -137,3 +137,39 @@ def test_commands_that_both_treads_hold_in_turn_are_no_stuck_encoder(sensors):
     for begin_s in (20, 50, 80, 110):
         run = held(held(run, "v_left", begin_s, begin_s + 8), "v_right", begin_s + 10, begin_s + 18)
     assert stuck(SENSORS[sensors](run)) == []
+
+
+def limited(run, name, change):
+    return put(run, "odometry", **{name: change(run.odometry[name])})
+
+
+def slow_and_fast():
+    at_s = 0.05 * np.arange(4000)
+    return drive(0.5 + 0.5 * np.sin(at_s / 11), 0.4 * np.sin(at_s / 3))
+
+
+def test_a_limit_of_the_speeds_is_named_beside_the_encoder():
+    (found,) = stuck(limited(slow_and_fast(), "v_right", lambda v: np.minimum(v, 0.7)))
+    assert "or it is clipped at 0.7 m/s, its largest value" in found.cause
+    (found,) = stuck(held(winding(), "v_right", 50, 60))
+    assert found.cause == "The encoder of the right tread is stuck or was lost"
+
+
+def test_a_dead_band_is_named_beside_the_encoder():
+    run = slow_and_fast()
+    for name in TREADS:
+        run = limited(run, name, lambda v: np.where(np.abs(v) < 0.4, 0.0, v))
+    assert all("dead band" in found.cause for found in stuck(run))
+    assert stuck(run)
+
+
+def test_a_gyroscope_that_the_poses_contradict_loses_no_encoder():
+    run = straight_between_stands()
+    at_s = run.odometry["t"]
+    pivots = (at_s > 62) & (at_s < 66)
+    left, right = np.where(pivots, 0.0, run.odometry["v_left"]), run.odometry["v_right"]
+    assert stuck(put(run, "odometry", v_left=left))
+    turn = np.where(pivots, (right - left) * 0.93 / 0.9, run.odometry["gyro_z"])
+    yaw = np.cumsum(turn) * 0.05
+    agree = put(put(run, "odometry", v_left=left), "pose", yaw=yaw[::2])
+    assert not stuck(agree)
