@@ -15,6 +15,9 @@ LEAST_WINDOWS = 12  # of each group that is compared
 CERTAIN = 3.0  # standard deviations
 SHARE = 0.35  # of the logarithm of a factor: what it may differ by between groups
 LIKE = (1.1, 1.3)  # ratio of factors: slip leaves the smaller one, above the larger one is no scale
+# Ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds.
+UNEQUAL = 1.15
+HELD = 0.9  # share of the turns explained where terrain holds
 TURNS_LIKE = 1.22  # the same of turns, on the straight and elsewhere, slow and fast
 Groups = Iterator[tuple[tuple[str, str], BoolArray, BoolArray]]
 
@@ -34,9 +37,21 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
     if evidence.yaw_rate is None:
         turns, of = evidence.pose_turn_rad, evidence.turn_motion
     across = _uneven(_of_turns(of), turns, of.difference_m, of.lasts_s, most=TURNS_LIKE)
+    if sides := _one_side(evidence):
+        return sides
     if along:
         return f"a metre of tread travel moves the robot by {along}"
     return f"a metre by which the treads differ turns the robot by {across}" if across else ""
+
+
+def _one_side(evidence: Evidence) -> str:
+    """Treads of which one turns the robot more than the other: no scale of both."""
+    turn = evidence.gyroscope_by_treads or evidence.pose_turn_by_treads
+    if turn is None or not (turn.certain(0) and turn.certain(1)) or turn.explained < HELD:
+        return ""
+    ratio = abs(float(turn.coefficients[0] / turn.coefficients[1]))
+    alike = 1 / UNEQUAL < ratio < UNEQUAL
+    return "" if alike else f"a metre of the left tread turns it {ratio:.3g} times as much as right"
 
 
 def uneven_gyroscope(evidence: Evidence, factor: float) -> str:

@@ -14,7 +14,7 @@ TIGHT = 0.9  # correlation from which a factor is a unit and no slip
 VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns alone may be a unit
 HALF = 0.5  # share of the turns explained from which they have a width
 PLAUSIBLE_M_S = 10.0  # no skid-steer robot is faster
-MIXED = 0.3  # of the narrowest width: columns that mix both treads still hold one of them most
+MIXED = 0.3  # of the narrowest width, or of one over the widest: no farther by a mix or a scale
 
 
 def width_factor(evidence: Evidence, gyroscope_factor: float) -> tuple[float | None, bool]:
@@ -90,8 +90,8 @@ def across(evidence: Evidence, forward: float | None, width: float, tight: bool)
             f"{seen}, but the treads explain only {100 * explained:.0f} % of its turns"
         )
     unit = " (mm?)" if width < 0.01 else _tenfold(width / ORDINARY_WIDTH)
-    mixed = (body is None or body_fits) and MIXED * WIDTH[0] < width < WIDTH[0]
-    others = _narrow(evidence, forward) if mixed else ""
+    possible = (body is None or body_fits) and MIXED * WIDTH[0] < width < WIDTH[1] / MIXED
+    others = _others(evidence, forward, narrow=width < WIDTH[0]) if possible else ""
     return Finding(
         "track_width",
         Level.WARNING,
@@ -102,14 +102,13 @@ def across(evidence: Evidence, forward: float | None, width: float, tight: bool)
     )
 
 
-def _narrow(evidence: Evidence, forward: float | None) -> str:
-    """What else makes turns too large for their treads by a factor."""
-    scaled = ", or tread speeds are too small" if forward is None else ""
-    alone = "" if evidence.yaw_measured else ", or the gyroscope reads too much"
-    return (
-        ", or the column of each tread holds a part of the other one (cross-talk, a mean)"
-        f"{scaled}{alone}: these cannot be distinguished"
-    )
+def _others(evidence: Evidence, forward: float | None, *, narrow: bool) -> str:
+    """What else makes turns too large, or too small, for their treads by a factor."""
+    mixed = ", or the column of each tread holds a part of the other one (cross-talk, a mean)"
+    size, more = ("small", "much") if narrow else ("large", "little")
+    scaled = f"tread speeds{' and positions' if forward is not None else ''} are too {size}"
+    alone = "" if evidence.yaw_measured else f", or the gyroscope reads too {more}"
+    return f"{mixed if narrow else ''}, or {scaled}{alone}: these cannot be distinguished"
 
 
 def _tenfold(factor: float) -> str:

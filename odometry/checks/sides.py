@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.constancy import groups_of_motion
+from odometry.checks.constancy import HELD, UNEQUAL, groups_of_motion
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.motion import turns_both_ways
@@ -12,12 +12,8 @@ from odometry.checks.relation import Relation, pieces, relation
 from odometry.checks.straight_drives import straight_drives
 from odometry.checks.undo import Mend, changed, treads_times
 
-UNEQUAL = (
-    1.15  # ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds
-)
 LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations
-HELD = 0.9  # share of the turns explained where terrain holds
 ARM = 0.5  # of the way along: more than an arm of the sensor adds to one tread
 LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
 TOO_LITTLE = 1.1  # metres moved for each of the mean tread travel, which no slip makes
@@ -122,7 +118,7 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
     if evidence.gyroscope_by_treads is None:
         m, turns = evidence.turn_motion, evidence.pose_turn_rad
     parts = (np.where(rows, turns, np.nan) for _, *both in groups_of_motion(m) for rows in both)
-    fits = [relation(of_part, m.left_m, m.right_m) for of_part in parts]
+    fits = [relation(of_part, m.left_m, m.right_m, m.lasts_s) for of_part in parts]
     ratios = [
         abs(float(piece.coefficients[0] / piece.coefficients[1]))
         for piece in [*pieces(turns, m.left_m, m.right_m), *filter(None, fits)]

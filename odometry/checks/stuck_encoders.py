@@ -1,28 +1,18 @@
 """One tread that stands, or keeps one value, while its motion goes on."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
-from odometry.checks.motion import Motion
+from odometry.checks.measured_turns import STUCK_S, measured_turns
 from odometry.checks.relation import relation
 from odometry.windows.spans import constant_spans, runs_of
 
-STUCK_S = 2.0  # that a tread keeps its value, and that another sensor contradicts it
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
 BOTH = 0.8  # share of such a time in which both treads keep their values: a held command does so
-MOVING = 0.1  # of the ordinary fastest speed, of either tread: at rest all sensors agree
-CONTRADICTED = 5.0  # times the usual residual
-OFF = 0.1  # of the ordinary fastest speed, by which the tread is wrong at least
-CORRELATED = 0.8  # that the motion elsewhere goes with the treads
-LEAST_WINDOWS = 4
-HALF = 0.5  # share of the windows of a span from which a sensor agrees with the treads
-OFTEN = 0.4  # share of the windows of such a time, of a value that the tread passes now and then
-RARELY = 3.0  # times more often within such a time than elsewhere
 PIVOTS = 0.8  # share of the turns that the other tread explains where the robot turns about one
 LEAST_ROWS = 20  # windows
 LEAST = 0.01  # of the values that are not zero: the slowest that is read
@@ -86,7 +76,7 @@ def _is_dead(evidence: Evidence, side: int) -> bool:
     speeds = np.abs(evidence.speeds_m_s)
     if np.quantile(speeds[:, side], 0.99) > STANDING * evidence.fastest_m_s:
         return False
-    for measured in _measured(evidence):
+    for measured in measured_turns(evidence):
         of_other = (measured.motion.right_m, measured.motion.left_m)[side]
         fit = relation(measured.target, of_other)
         if fit is not None and fit.measured >= LEAST_ROWS and fit.explained < PIVOTS:
@@ -145,97 +135,22 @@ def _is_a_gap(evidence: Evidence, span: FloatArray) -> bool:
 def _contradicted(evidence: Evidence, span: FloatArray, side: int) -> list[tuple[float, float]]:
     """From when to when what a sensor measures is far from what the treads say; [] where never.
 
-    Where the gyroscope and the poses part, one of these is at fault.
+    Where the gyroscope and the poses part, one of these is at fault. A tread about which the robot
+    turns stands: elsewhere, or all the time, treads have another scale.
     """
-    sensors = list(_measured(evidence))
+    sensors = list(measured_turns(evidence))
     for measured in sensors:
         found = measured.contradicts(evidence.fastest_m_s, span, side)
         if found is None:
             continue
         others = (sensor for sensor in sensors if sensor is not measured)
         agrees = any(other.agrees(evidence.fastest_m_s, found, side) for other in others)
-        return [] if agrees else [found]
+        pivots = _is_read(evidence, found, side) and measured.pivots(found, side)
+        return [] if agrees or pivots else [found]
     return []
 
 
-@dataclass(frozen=True)
-class _Measured:
-    """Motion of K windows, and what one sensor measured of it (K,)."""
-
-    motion: Motion
-    target: FloatArray
-
-    def agrees(self, fastest_m_s: float, span: tuple[float, float], side: int) -> bool:
-        """Whether most windows in a span are those that the treads say, noise or not."""
-        treads = self._treads_m
-        inside = self._moving(fastest_m_s) & self._within(span)
-        fit = relation(np.where(inside, np.nan, self.target), *treads.T)
-        if fit is None or inside.sum() < LEAST_WINDOWS:
-            return False
-        off = np.abs(self.target - treads @ fit.coefficients)
-        near = off < OFF * abs(fit.coefficients[side]) * fastest_m_s * self.motion.lasts_s
-        return bool(np.mean(near[inside]) > HALF)
-
-    @property
-    def _treads_m(self) -> FloatArray:
-        return np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
-
-    def _moving(self, fastest_m_s: float) -> BoolArray:
-        """Windows (K,) that were measured and in which a tread moves."""
-        fast = np.abs(self._treads_m).max(axis=1) > MOVING * fastest_m_s * self.motion.lasts_s
-        return np.asarray(np.isfinite(self.target) & fast)
-
-    def _within(self, span: FloatArray | tuple[float, float]) -> BoolArray:
-        begun, ended = self.motion.start_s >= span[0], self.motion.end_s <= span[1]
-        return np.asarray(begun & ended)
-
-    def contradicts(
-        self, fastest_m_s: float, span: FloatArray, side: int
-    ) -> tuple[float, float] | None:
-        """First and last stamp of the windows in a span that are contradicted for long enough.
-
-        The relation of treads and sensor is that of all windows outside. Windows at rest say
-        nothing: the tread may have stood before it was lost.
-        """
-        m, treads, way_m = self.motion, self._treads_m, fastest_m_s * self.motion.lasts_s
-        moving = self._moving(fastest_m_s)
-        inside = moving & self._within(span)
-        outside = (m.end_s <= span[0]) | (m.start_s >= span[1])
-        if inside.sum() < LEAST_WINDOWS or (outside & moving).sum() < LEAST_WINDOWS:
-            return None
-        fit = relation(np.where(outside, self.target, np.nan), *treads.T)
-        if fit is None or fit.correlation < CORRELATED:
-            return None
-        off = np.abs(self.target - treads @ fit.coefficients)
-        usual = float(np.median(off[outside & moving]))
-        least = np.maximum(CONTRADICTED * usual, OFF * abs(fit.coefficients[side]) * way_m)
-        odd = moving & (off > least)
-        often = float(np.mean(odd[inside]))
-        if often < RARELY * np.mean(odd[outside & moving]):
-            return None
-        if often > OFTEN and (inside & odd).sum() >= LEAST_WINDOWS:
-            return _ends(m, inside & odd)
-        return _lasting(m, inside, odd)
-
-
-def _lasting(m: Motion, inside: BoolArray, odd: BoolArray) -> tuple[float, float] | None:
-    """First and last stamp of unbroken windows that are odd for long, of those inside."""
-    rows = np.flatnonzero(inside)
-    ends = [(rows[first], rows[after - 1]) for first, after in runs_of(odd[rows])]
-    long = [
-        (first, last)
-        for first, last in ends
-        if last - first + 1 >= LEAST_WINDOWS and m.end_s[last] - m.start_s[first] >= STUCK_S
-    ]
-    return _ends(m, np.ravel(long)) if long else None
-
-
-def _ends(m: Motion, rows: BoolArray | IntArray) -> tuple[float, float]:
-    return float(m.start_s[rows][0]), float(m.end_s[rows][-1])
-
-
-def _measured(evidence: Evidence) -> Iterator[_Measured]:
-    """Turns by gyroscope and poses. The way along is none of them: it changes where treads slip."""
-    if evidence.yaw_rate is not None:
-        yield _Measured(evidence.uniform, evidence.uniform.gyroscope_rad)
-    yield _Measured(evidence.turn_motion, evidence.pose_turn_rad)
+def _is_read(evidence: Evidence, span: tuple[float, float], side: int) -> bool:
+    """Whether the values of a tread that stands differ, as those of an encoder that works."""
+    inside = (evidence.stamps_s >= span[0]) & (evidence.stamps_s <= span[1])
+    return bool(np.ptp(evidence.speeds_m_s[inside, side]) > 0)

@@ -74,7 +74,10 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
     currents = [evidence.run.odometry[n] for n in names if n in evidence.run.odometry]
     if any(np.ptp(current[inside]) > 0 for current in currents):
         return f"{BLOCKED}: the currents of the motors go on changing; or odometry is lost"
-    return f"{LOST}; or the robot is blocked or its wheels spin: they stay equal elsewhere as well"
+    return (
+        f"{LOST}; or the robot is blocked or its wheels spin, or readings are coarse: they stay "
+        "equal elsewhere as well"
+    )
 
 
 def moves_differently(evidence: Evidence, span: FloatArray) -> bool:

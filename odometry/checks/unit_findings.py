@@ -12,6 +12,7 @@ from odometry.checks.undo import gyroscope_times, times, treads_times
 from odometry.checks.unit_tables import (
     EQUAL,
     ORDINARY_FORWARD,
+    RADII_M,
     Unit,
     as_likely,
     matching,
@@ -120,7 +121,9 @@ def tread_unit(
     words = [*(words or [f"in {unit.words}"]), *others]
     if 1 / 4 < unit.factor < 4:
         factor = ORDINARY_FORWARD * (measured or unit.factor)
-        words.append(f"scaled by {factor:.2g} (gear ratio, wheels of another radius)")
+        usual = RADII_M[0] < 1 / factor < RADII_M[1]
+        rate = f", rad/s of wheels of {1 / factor:.2g} m radius" if usual else ""
+        words.append(f"scaled by {factor:.2g} (gear ratio{rate})")
     several = ": these cannot be distinguished" if len(words) > 1 else ""
     return Finding(
         "tread_unit",
