@@ -119,12 +119,17 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
         m, turns = evidence.turn_motion, evidence.pose_turn_rad
     parts = (np.where(rows, turns, np.nan) for _, *both in groups_of_motion(m) for rows in both)
     fits = [relation(of_part, m.left_m, m.right_m, m.lasts_s) for of_part in parts]
-    ratios = [
-        abs(float(piece.coefficients[0] / piece.coefficients[1]))
-        for piece in [*pieces(turns, m.left_m, m.right_m), *filter(None, fits)]
-        if piece.certain(0, TIMES) and piece.certain(1, TIMES)
-    ]
-    return all(np.log(of) / np.log(ratio) > LASTING for of in ratios)
+    found = [*pieces(turns, m.left_m, m.right_m), *filter(None, fits)]
+    logarithms = [_log_ratio(part) for part in found if part.certain(0, TIMES)]
+    size = abs(np.log(ratio))
+    return all(of / np.log(ratio) > LASTING for of, sigma in logarithms if sigma < LASTING * size)
+
+
+def _log_ratio(turn: Relation) -> tuple[float, float]:
+    """Logarithm of the left tread's share over the right one's, and its standard deviation."""
+    left, right = turn.coefficients[:2]
+    sigma = np.hypot(*(turn.sigmas[:2] / turn.coefficients[:2]))
+    return float(np.log(abs(left / right))), float(sigma)
 
 
 def _offset(evidence: Evidence) -> Iterator[Finding]:
