@@ -18,7 +18,7 @@ LIKE = (1.1, 1.3)  # ratio of factors: slip leaves the smaller one, above the la
 # Ratio of the treads' shares in turns; real ones have 0.94 to 1.07 where terrain holds.
 UNEQUAL = 1.15
 HELD = 0.9  # share of the turns explained where terrain holds
-TURNS_LIKE = 1.22  # the same of turns, on the straight and elsewhere, slow and fast
+TURNS_LIKE = (1.22, 1.5)  # the same of turns, on the straight and elsewhere, slow and fast
 Groups = Iterator[tuple[tuple[str, str], BoolArray, BoolArray]]
 
 
@@ -36,7 +36,9 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
     turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
     if evidence.yaw_rate is None:
         turns, of = evidence.pose_turn_rad, evidence.turn_motion
-    across = _uneven(_of_turns(of), turns, of.difference_m, of.lasts_s, most=TURNS_LIKE)
+    across = _uneven(
+        _of_turns(of), turns, of.difference_m, of.lasts_s, most=ratio_left(factor, TURNS_LIKE)
+    )
     if sides := _one_side(evidence):
         return sides
     if along:
@@ -62,9 +64,9 @@ def uneven_gyroscope(evidence: Evidence, factor: float) -> str:
     return f"a radian of the gyroscope is one of the poses times {found}" if found else ""
 
 
-def ratio_left(factor: float) -> float:
+def ratio_left(factor: float, like: tuple[float, float] = LIKE) -> float:
     """By what ratio a constant factor may differ between groups of windows."""
-    return float(np.clip(np.exp(SHARE * abs(np.log(factor))), *LIKE))
+    return float(np.clip(np.exp(SHARE * abs(np.log(factor))), *like))
 
 
 def _uneven(groups: Groups, target: FloatArray, *columns: FloatArray, most: float) -> str:
