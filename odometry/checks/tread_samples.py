@@ -67,7 +67,8 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
             Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
             f"tread speeds are zero between two of full speed in {counted(total, 'sample')} "
             f"(v_left {counts['v_left']}, v_right {counts['v_right']})",
-            "Samples drop out: zeros are written where a message was lost",
+            "Samples drop out: zeros are written where a message was lost; or rows are out of "
+            "order, or small speeds read too large beside a tread that stands",
             "Remove these rows: the speed before them holds meanwhile",
             tuple((span, span) for span in sorted(spans)),
         )
