@@ -1,8 +1,7 @@
 """Noise of poses that the recording shows: scattered positions, and interpolated poses."""
 
+import math
 from dataclasses import replace
-
-import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
@@ -50,8 +49,8 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
     )
     return replace(
         config,
-        position_sigma_m=config.position_sigma_m * np.sqrt(count),
-        yaw_sigma_rad=config.yaw_sigma_rad * np.sqrt(count),
+        position_sigma_m=config.position_sigma_m * math.sqrt(count),
+        yaw_sigma_rad=config.yaw_sigma_rad * math.sqrt(count),
     ), (*scattered, event)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
+from odometry.checks.measured_turns import measured_turns
 from odometry.checks.motion import Motion
 from odometry.checks.relation import Relation, relation
 
@@ -33,12 +34,9 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
         forward_m, mean_m = m.distance_m, np.abs(mean_m)
     most = ratio_left(factor)
     along = _uneven(_of_way(m), forward_m, mean_m, most=most)
-    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
-    if evidence.yaw_rate is None:
-        turns, of = evidence.pose_turn_rad, evidence.turn_motion
-    across = _uneven(
-        _of_turns(of), turns, of.difference_m, of.lasts_s, most=ratio_left(factor, TURNS_LIKE)
-    )
+    turns = next(measured_turns(evidence))
+    of, most = turns.motion, ratio_left(factor, TURNS_LIKE)
+    across = _uneven(_of_turns(of), turns.target, of.difference_m, of.lasts_s, most=most)
     if sides := _one_side(evidence):
         return sides
     if along:

@@ -113,7 +113,10 @@ def _ends(m: Motion, rows: BoolArray | IntArray) -> tuple[float, float]:
 
 
 def measured_turns(evidence: Evidence) -> Iterator[MeasuredTurns]:
-    """Turns by gyroscope and poses. The way along is none of them: it changes where treads slip."""
+    """Turns by the gyroscope, where there is one, and then by the poses.
+
+    The way along is none of them: it changes where treads slip.
+    """
     if evidence.yaw_rate is not None:
         yield MeasuredTurns(evidence.uniform, evidence.uniform.gyroscope_rad)
     yield MeasuredTurns(evidence.turn_motion, evidence.pose_turn_rad)

@@ -13,7 +13,7 @@ from odometry.checks.steps import (
     JITTER_S,
     JUMP_TIMES,
     NEAR_S,
-    SHOWN,
+    first_ones,
     jumps_by_itself,
     moments,
     rate_of,
@@ -163,15 +163,12 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
 def _pose_jumps(
     evidence: Evidence, at_s: FloatArray, steps_m: FloatArray, usual_m: float
 ) -> Finding:
-    places = ", ".join(
-        f"{step_m:.3g} m at {evidence.run_time_s(stamp_s):.1f} s"
-        for step_m, stamp_s in zip(steps_m[:SHOWN], at_s[:SHOWN], strict=True)
-    )
+    places = first_ones(evidence, at_s, [f"{step_m:.3g} m" for step_m in steps_m])
     return Finding(
         "pose_jumps",
         Level.WARNING,
         f"poses jump against what treads and yaw say, and stay, {counted(len(at_s), 'time')}: "
-        f"{places}{' ...' if len(at_s) > SHOWN else ''} (usual: {usual_m:.2g} m)",
+        f"{places} (usual: {usual_m:.2g} m)",
         "Poses jump: the reference was relocalised, its map or fix changed, or it held its pose or "
         "its clock for a while",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",

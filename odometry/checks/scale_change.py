@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.constancy import uneven_way
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
+from odometry.checks.measured_turns import measured_turns
 from odometry.checks.relation import Relation, relation
 from odometry.checks.undo import TREADS, Mend, changed, in_turn
 from odometry.run import Run
@@ -30,10 +31,9 @@ def scale_change(evidence: Evidence) -> Iterator[Finding]:
     if moment_s is None:
         return
     along = _before_and_after(moment_s, m.end_s, m.start_s, evidence.forward_m, m.mean_m)
-    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
-    if evidence.yaw_rate is None:
-        turns, of = evidence.pose_turn_rad, evidence.turn_motion
-    across = _before_and_after(moment_s, of.end_s, of.start_s, turns, of.difference_m)
+    turns = next(measured_turns(evidence))
+    of = turns.motion
+    across = _before_and_after(moment_s, of.end_s, of.start_s, turns.target, of.difference_m)
     if along is None or across is None:
         return
     factor, in_turns = (after.slope / before.slope for before, after in (along, across))

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
+from odometry.checks.measured_turns import measured_turns
 from odometry.checks.relation import relation
 
 PARTS, FEWEST = 8, 6
@@ -20,9 +21,8 @@ TOGETHER, APART = 0.95, 0.35
 def scale_drifts(evidence: Evidence) -> str:
     """Words where what a metre of the treads moves and turns changes from part to part alike."""
     m, forward_m = evidence.motion, evidence.forward_m
-    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
-    if evidence.yaw_rate is None:
-        turns, of = evidence.pose_turn_rad, evidence.turn_motion
+    turns = next(measured_turns(evidence))
+    of = turns.motion
     edges_s = np.linspace(evidence.stamps_s[0], evidence.stamps_s[-1], PARTS + 1)
     factors = []
     for begin_s, end_s in pairwise(edges_s.tolist()):
@@ -30,7 +30,7 @@ def scale_drifts(evidence: Evidence) -> str:
             _factor(target[rows], by[rows])
             for target, by, rows in (
                 (forward_m, m.mean_m, (m.start_s >= begin_s) & (m.end_s <= end_s)),
-                (turns, of.difference_m, (of.start_s >= begin_s) & (of.end_s <= end_s)),
+                (turns.target, of.difference_m, (of.start_s >= begin_s) & (of.end_s <= end_s)),
             )
         )
         if along > 0 and across > 0:

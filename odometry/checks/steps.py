@@ -1,5 +1,7 @@
 """Steps of a difference that should be smooth, and positions by dead reckoning."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
@@ -78,6 +80,15 @@ def rate_of(values: FloatArray, stamps_s: FloatArray) -> FloatArray:
     return np.append(rates, rates[-1:])
 
 
+def first_ones(evidence: Evidence, at_s: FloatArray, sizes: Sequence[str]) -> str:
+    """Sizes of the first steps (K,) in words, each with its run time."""
+    places = ", ".join(
+        f"{size} at {evidence.run_time_s(stamp_s):.1f} s"
+        for size, stamp_s in zip(sizes[:SHOWN], at_s[:SHOWN], strict=True)
+    )
+    return f"{places}{' ...' if len(at_s) > SHOWN else ''}"
+
+
 def moments(evidence: Evidence, at_s: FloatArray) -> tuple[tuple[float, float], ...]:
     """Spans without length, in run time [s], at stamps (K,)."""
     return tuple((evidence.run_time_s(stamp_s),) * 2 for stamp_s in at_s)
@@ -100,8 +111,10 @@ def jumps_by_itself(stamps_s: FloatArray, values: FloatArray, at: int, size: flo
     """
     reach_s = max(FAR_S, 1.5 * float(np.median(np.diff(stamps_s))))
     first, last = np.searchsorted(stamps_s, stamps_s[at] + np.array([-reach_s, reach_s]))
+    near = slice(max(first - 2 - BESIDE, 0), last + 2 + BESIDE)
+    stamps_s, values = stamps_s[near], values[near]
     rates = np.diff(values, axis=0) / np.diff(stamps_s)[:, None]
-    for row in range(max(first - 2, BESIDE), min(last, len(rates) - BESIDE - 1)):
+    for row in range(BESIDE, len(rates) - BESIDE - 1):
         before, after = rates[row - BESIDE : row], rates[row + 2 : row + 2 + BESIDE]
         lasts_s = float(stamps_s[row + 2] - stamps_s[row])
         rate = (values[row + 2] - values[row]) / lasts_s

@@ -146,7 +146,7 @@ def is_read(evidence: Evidence, span: FloatArray) -> bool:
 
 
 def _counters(evidence: Evidence) -> Iterator[Finding]:
-    """Columns whose changes, not whose values, are the motion that each sensor measures."""
+    """Columns whose changes are a measured motion, while their values explain none."""
     targets = list(_targets(evidence))
     if any(plain is not None and plain.explained > SPEEDS for *_, plain in targets):
         return  # a gyroscope that holds the change of the turn rate makes counters of speeds

@@ -11,7 +11,7 @@ from odometry.checks.steps import (
     FAR_S,
     JITTER_S,
     JUMP_TIMES,
-    SHOWN,
+    first_ones,
     jumps_by_itself,
     moments,
     rate_of,
@@ -85,10 +85,8 @@ def _steps(evidence: Evidence, stamps_s: FloatArray, off_rad: FloatArray) -> Flo
 def _jumps(evidence: Evidence, at_s: FloatArray, steps_rad: FloatArray) -> Finding:
     turned = np.abs(steps_rad - np.pi) < HALF_TURN_RAD
     reverses = sum(_reverses(evidence, stamp_s) for stamp_s in at_s[turned].tolist())
-    places = ", ".join(
-        f"{np.degrees(step_rad):.0f} degrees at {evidence.run_time_s(stamp_s):.1f} s"
-        for step_rad, stamp_s in zip(steps_rad[:SHOWN], at_s[:SHOWN], strict=True)
-    )
+    sizes = [f"{degrees:.0f} degrees" for degrees in np.degrees(steps_rad)]
+    places = first_ones(evidence, at_s, sizes)
     return Finding(
         "yaw_jumps",
         Level.WARNING,

@@ -14,7 +14,7 @@ from odometry.gap.name.names import explained
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.prepared import Prepared, prepared
-from odometry.gap.prepare.statistic import Measure, floor_of, floor_there
+from odometry.gap.prepare.statistic import Measure, floor_there
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
@@ -88,7 +88,7 @@ def _explained(
     """The explanation by the first measure that gives a name, or else by the last."""
     config, known, (fitted, held_out) = ready.config, ready.known, ready.scenes
     for measure in measures_of(known, fitted, held_out, config, has_yaw=ready.has_yaw):
-        floor = floor_of(known.held_back, config.part_s, measure)
+        floor = ready.floor(measure)
         floors = (
             floor_there(floor, known, fitted, config),
             floor_there(floor, known, held_out, config),

@@ -1,6 +1,6 @@
 """Small images of photographs, by which copies that were saved again are recognised."""
 
-from collections.abc import Iterable
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -38,11 +38,15 @@ def thumbnail_text(image: ByteImage) -> str:
     return np.rint(LEVELS * values / largest).astype(np.int8).tobytes().hex()
 
 
-def looks_like_one(image: ByteImage, texts: Iterable[str]) -> bool:
+def looks_like_one(image: ByteImage, texts: frozenset[str]) -> bool:
     """Whether an image looks nearly like one of those that `thumbnail_text` was taken of."""
-    known = [np.frombuffer(bytes.fromhex(text), np.int8) for text in texts]
-    if not known:
-        return False
-    table = np.stack(known).astype(np.float64)
-    lengths = np.maximum(np.linalg.norm(table, axis=1), np.finfo(float).tiny)
-    return bool(((table @ thumbnail(image)) / lengths).max() > ALIKE)
+    return bool((_thumbnails(texts) @ thumbnail(image)).max(initial=0.0) > ALIKE)
+
+
+@lru_cache(maxsize=1)
+def _thumbnails(texts: frozenset[str]) -> FloatArray:
+    """Rows of length one, as `thumbnail` makes them; zero where that is."""
+    rows = [np.frombuffer(bytes.fromhex(text), np.int8) for text in sorted(texts)]
+    table = np.array(rows, dtype=np.float64).reshape(-1, THUMBNAIL_PX**2)
+    lengths = np.linalg.norm(table, axis=1, keepdims=True)
+    return np.asarray(table / np.maximum(lengths, np.finfo(float).tiny))

@@ -13,12 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.icr_ekf import IcrEkf
 from odometry.geometry.angles import wrap
-from odometry.pipeline import ConstantTerrain, replay
 from odometry.pose_noise import with_pose_noise
 from odometry.run import Run
-from tests.studies.estimation_noise import RECORDINGS, SETTLED_S, errors
+from tests.studies.estimation_noise import RECORDINGS, errors, replayed
 from tests.studies.estimation_recordings import motion
 
 PERIODS_S, GRID_S = (1.0, 2.0), 0.1
@@ -42,7 +40,8 @@ def figures(run, period_s):
     filled, alone = with_poses(run, grid_s, lines), with_poses(run, stamps_s, poses)
     usual = IcrEkfConfig()
     ways = ((filled, usual), (filled, with_pose_noise(filled, usual)[0]), (alone, usual))
-    return [(*errors(run, of, config), pose_nees(run, of, config)) for of, config in ways]
+    replays = [replayed(run, of, config) for of, config in ways]
+    return [(*errors(*of), pose_nees(*of)) for of in replays]
 
 
 def thinned(run, period_s):
@@ -60,19 +59,11 @@ def with_poses(run, stamps_s, poses):
     )
 
 
-def pose_nees(run, thinner, config):
-    ekf = IcrEkf(run.robot.track_width, config=config)
-    result = replay(thinner, ekf, ConstantTerrain("ground"))
-    measured = run.pose.stack("x", "y", "yaw")
-    measured[:, 2] = np.unwrap(measured[:, 2])
-    stamps_s = result.stamps_s
-    true = np.column_stack([np.interp(stamps_s, run.pose.stamps_s, c) for c in measured.T])
-    begin_s, end_s = run.pose.stamps_s[0] + SETTLED_S, thinner.pose.stamps_s[-1]
-    settled = (stamps_s >= begin_s) & (stamps_s <= end_s)
+def pose_nees(result, true, settled):
     off = result.numbers("mean", columns=slice(0, 3))[settled] - true[settled]
     off[:, 2] = wrap(off[:, 2])
-    of_pose = [of.covariance[:3, :3] for of in np.array(list(result.estimates))[settled]]
-    return np.einsum("ni,nij,nj->n", off, np.linalg.inv(of_pose), off).mean()
+    covariances = result.pose_covariances[settled]
+    return np.einsum("ni,nij,nj->n", off, np.linalg.inv(covariances), off).mean()
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ def figures(name, sigma_m, rate_hz, with_yaw):
     noisy = with_noise(run, sigma_m, rate_hz, with_yaw)
     taken, _ = with_pose_noise(noisy, IcrEkfConfig())
     configs = (IcrEkfConfig(), taken, IcrEkfConfig(position_sigma_m=sigma_m))
-    return taken.position_sigma_m, [errors(run, noisy, config) for config in configs]
+    return taken.position_sigma_m, [errors(*replayed(run, noisy, config)) for config in configs]
 
 
 def with_noise(run, sigma_m, rate_hz, with_yaw):
@@ -71,8 +71,8 @@ def with_noise(run, sigma_m, rate_hz, with_yaw):
     return replace(run, pose=replace(run.pose, columns=columns))
 
 
-def errors(run, noisy, config):
-    """Mean errors of the estimate [m] and of the odometer [m per m]."""
+def replayed(run, noisy, config):
+    """The replay, the poses as they were (N, 3) at its stamps, and the rows to evaluate (N,)."""
     ekf = IcrEkf(run.robot.track_width, config=config)
     result = replay(noisy, ekf, ConstantTerrain("ground"))
     measured = run.pose.stack("x", "y", "yaw")
@@ -80,11 +80,16 @@ def errors(run, noisy, config):
     stamps_s = result.stamps_s
     true = np.column_stack([np.interp(stamps_s, run.pose.stamps_s, c) for c in measured.T])
     settled = (stamps_s >= run.pose.stamps_s[0] + SETTLED_S) & (stamps_s <= run.pose.stamps_s[-1])
+    return result, true, settled
+
+
+def errors(result, true, settled):
+    """Mean errors of the estimate [m] and of the odometer [m per m]."""
     estimate = result.numbers("mean", columns=slice(0, 2))
     path = path_of(result)
     first = np.flatnonzero(settled)[::20]
     last = np.searchsorted(path.travel_m, path.travel_m[first] + HORIZON_M)
-    within = last < len(stamps_s)
+    within = last < len(true)
     off = se2.between(path.poses[first[within]], path.poses[last[within]])
     off -= se2.between(true[first[within]], true[last[within]])
     return (

@@ -25,7 +25,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.prepare.held_out import Apart
 from odometry.gap.prepare.outliers import Outliers
 from odometry.gap.prepare.prepared import Prepared
-from odometry.gap.prepare.statistic import Measure, floor_of, floor_there, gap_m, gap_of
+from odometry.gap.prepare.statistic import Measure, floor_there, gap_m, gap_of
 
 
 @dataclass(frozen=True)
@@ -53,12 +53,13 @@ def answered(ready: Prepared, fitter: Fitter, found: Explanation, measure: Measu
     more = rivals_of_one_heading(found, fitter, config)
     equivalent = () if verdict == "none" else equivalents(found, more, fitter, config)
     equivalent = (*equivalent, *terrain_instead(found.fitted.effects, equivalent, fitted))
-    floor = floor_of(ready.known.held_back, config.part_s)
     return GapResult(
         verdict=verdict,
         effects=named,
         equivalent=equivalent,
-        location=locate(ready.known.base, (), fitted, floor.value, config, calibration=ready.known),
+        location=locate(
+            ready.known.base, (), fitted, ready.floor().value, config, calibration=ready.known
+        ),
         measured=closed.closings[0],
         holdout=closed.closings[1],
         turns=closed.shown if measure is not Measure.POSITION else None,
@@ -85,7 +86,7 @@ def _closed(ready: Prepared, found: Explanation, measure: Measure) -> _Closed:
     def by(measure: Measure) -> tuple[Closing, Closing]:
         """Of windows before and after, measured and held out."""
         part_s = ready.config.part_s
-        floor = floor_of(known.held_back, part_s, measure)
+        floor = ready.floor(measure)
         of_fitted, of_held_out = (
             Closing(
                 gap_of(known.base, (), before, part_s, measure),
@@ -105,8 +106,7 @@ def _named(ready: Prepared, found: Explanation, closed: _Closed) -> tuple[NamedE
     named = named_effects(found, closed.effects, gap_m(known.base, (), fitted))
     if ready.outliers is not None:
         named = _with_outliers(ready, ready.outliers, closed, named)
-    floor = floor_of(known.held_back, ready.config.part_s)
-    rounding = named_rounding(fitted, held_out, known, floor, ready.config)
+    rounding = named_rounding(fitted, held_out, known, ready.floor(), ready.config)
     if rounding is None:
         return named
     return (rounding, *named) if closed.measure is Measure.POSITION else (*named, rounding)

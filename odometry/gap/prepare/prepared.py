@@ -18,6 +18,7 @@ from odometry.gap.prepare.scenes import (
     scenes_of,
     without_outliers,
 )
+from odometry.gap.prepare.statistic import Gap, Measure, floor_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.positions.heading import headed
@@ -53,6 +54,10 @@ class Prepared:
     outliers: Outliers | None
     has_yaw: bool
     notes: tuple[str, ...]
+
+    def floor(self, measure: Measure = Measure.POSITION) -> Gap:
+        """The noise floor of the calibration by a measure."""
+        return floor_of(self.known.held_back, self.config.part_s, measure)
 
 
 def prepared(
