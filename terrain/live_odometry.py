@@ -9,10 +9,10 @@ from odometry.estimation.icr_ekf import IcrEkf
 from odometry.feel.live import NOTHING
 from odometry.feel.model import FeelModel
 from odometry.frames import Frame
-from odometry.live_frames import RunningOdometer
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import TerrainSource, can_start, started, stepped
 from odometry.run import UNKNOWN, Robot
+from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
@@ -80,6 +80,8 @@ class LiveOdometry:
     ...     step = live.step(odometry.Frame(stamp_s, np.array([0.5, 0.5]), i, None, None))
     >>> print(step.odometer.round(3))  # x, y [m], yaw [rad]
     [0.1 0.  0. ]
+    >>> print(step.odometer_covariance.diagonal().round(4))  # of these, m^2 and rad^2
+    [0.01   0.0098 0.0077]
     """
 
     def __init__(
@@ -169,18 +171,18 @@ class LiveOdometry:
         if self._estimate is None or self._odometer is None:
             self._estimate = started(self._ekf, self._source, frame)
             self._odometer = RunningOdometer(self._estimate)
-            pose = self._odometer.pose
         else:
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
-            pose = self._odometer.step(self._estimate)
+            self._odometer.step(self._estimate)
+        odometer = (self._odometer.pose, self._odometer.covariance)
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:
             seen = self._watcher.image_labels[-1] if frame.image is not None else None
             event = self._watcher.event
         if self._felt is None:
-            return LiveStep(self._estimate, pose, terrain, seen, event)
-        felt = self._felt.after(self._estimate.stamp_s, pose, seen)
-        return LiveStep(self._estimate, pose, terrain, seen, event, *felt)
+            return LiveStep(self._estimate, *odometer, terrain, seen, event)
+        felt = self._felt.after(self._estimate.stamp_s, self._odometer.pose, seen)
+        return LiveStep(self._estimate, *odometer, terrain, seen, event, *felt)
 
     @property
     def likeness(self) -> Likeness | None:

@@ -20,6 +20,8 @@ class LiveStep:
         Pose corrected by measured poses, ICRs, covariance, and what the filter noticed.
     odometer : (3,)
         x, y [m], yaw [rad] of the odometer, which no measured pose corrects after the start.
+    odometer_covariance : (3, 3)
+        Of these. Without poses it is that of `estimate`, too, whose own is then too small.
     terrain : str
         In force; `unknown` where for long no label supported it.
     image_label : ImageLabel or None
@@ -44,6 +46,7 @@ class LiveStep:
 
     estimate: Estimate
     odometer: FloatArray
+    odometer_covariance: FloatArray
     terrain: str
     image_label: ImageLabel | None = None
     switch: SwitchEvent | None = None

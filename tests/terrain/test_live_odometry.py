@@ -131,6 +131,25 @@ def test_a_hard_run_is_the_same_live_and_only_with_the_causal_setting(hard_run, 
     assert knowing["odometer.csv"] != expected["odometer.csv"]
 
 
+def test_the_covariance_of_the_odometer_without_poses_is_that_of_a_whole_run(hard_run):
+    """Over turns, lost odometry and a bias that is learned.
+
+    A run adds errors up in the middle of each step, live has the exact derivative: they differ
+    in the step of 2.5 s without odometry.
+    """
+    bare = replace(hard_run, pose=None)
+    for run in (bare, replace(bare, imu=None)):
+        steps = fed(run, parameters=SET, terrain="boards")
+        settings = {"parameters": SET, "terrain": "boards"}
+        expected = run_odometry(run, config=CAUSAL, **settings).uncertainty.covariances
+        found = np.array([step.odometer_covariance for step in steps])
+        sizes = np.sqrt(np.einsum("nii,njj->nij", expected, expected))
+        off = np.abs(found - expected) / sizes
+        after_gap = np.array([step.estimate.stamp_s > 12.0 for step in steps])
+        assert off[~after_gap].max() < 1e-4
+        assert off[after_gap].max() < 0.03
+
+
 def test_nothing_starts_before_speeds_are_known_and_a_pose_where_one_is_wanted():
     unknown, known = np.full(2, np.nan), np.array([0.5, 0.5])
     pose = np.array([3.0, 4.0, 0.1])
