@@ -28,6 +28,8 @@ class RunningOdometer:
     ----------
     pose : (3,)
         x, y [m], yaw [rad] at the latest estimate.
+    twist : (3,)
+        v_x, v_y [m/s], omega [rad/s] in the robot frame over the step that led to it.
 
     Notes
     -----
@@ -40,7 +42,7 @@ class RunningOdometer:
         self._held = estimate
         self._start = estimate.mean[:3]
         self._moved = np.zeros(3)  # x, y [m], yaw [rad] since the start, yaw not wrapped
-        self.pose = self._at()
+        self.pose, self.twist = self._at(), np.zeros(3)
         self._random = estimate.covariance[:3, :3].copy()
         self._lasting = np.zeros((3, CONSTANT.size + STATES - Y_LEFT))  # by constants, parameters
 
@@ -53,7 +55,8 @@ class RunningOdometer:
         """Go on to the next estimate."""
         duration_s = estimate.stamp_s - self._held.stamp_s
         self._carry_errors(estimate, duration_s)
-        step = se2.exp(self._twist(estimate) * duration_s)
+        self.twist = self._twist_until(estimate)
+        step = se2.exp(self.twist * duration_s)
         yaw = self._start[2] + self._moved[2]
         cosine, sine = np.cos(yaw), np.sin(yaw)
         along_x = cosine * step[0] - sine * step[1]
@@ -66,7 +69,7 @@ class RunningOdometer:
         x, y, yaw = self._start + self._moved
         return np.array([x, y, wrap(yaw)])
 
-    def _twist(self, estimate: Estimate) -> FloatArray:
+    def _twist_until(self, estimate: Estimate) -> FloatArray:
         """Body twist (3,) up to an estimate, as `Replay.odometer_twists` has it."""
         held = self._held
         y_left, y_right, x_icr = held.mean[ICRS]

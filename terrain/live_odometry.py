@@ -174,7 +174,7 @@ class LiveOdometry:
         else:
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
             self._odometer.step(self._estimate)
-        odometer = (self._odometer.pose, self._odometer.covariance)
+        odometer = (self._odometer.pose, self._odometer.covariance, self._odometer.twist)
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:
             seen = self._watcher.image_labels[-1] if frame.image is not None else None

@@ -22,6 +22,9 @@ class LiveStep:
         x, y [m], yaw [rad] of the odometer, which no measured pose corrects after the start.
     odometer_covariance : (3, 3)
         Of these. Without poses it is that of `estimate`, too, whose own is then too small.
+    twist : (3,)
+        v_x, v_y [m/s], omega [rad/s] in the robot frame, of the odometer since the frame before;
+        zero at the first.
     terrain : str
         In force; `unknown` where for long no label supported it.
     image_label : ImageLabel or None
@@ -47,6 +50,7 @@ class LiveStep:
     estimate: Estimate
     odometer: FloatArray
     odometer_covariance: FloatArray
+    twist: FloatArray
     terrain: str
     image_label: ImageLabel | None = None
     switch: SwitchEvent | None = None

@@ -124,6 +124,9 @@ def test_a_hard_run_is_the_same_live_and_only_with_the_causal_setting(hard_run, 
     assert written(replace(live, watcher=None), tmp_path / "live") == expected
     poses = np.array([step.odometer for step in steps])
     np.testing.assert_array_equal(poses, result.replay.odometer().poses)
+    twists = np.array([step.twist for step in steps])
+    assert not twists[0].any()
+    np.testing.assert_array_equal(twists[1:], result.replay.odometer_twists()[:-1])
     kinds = {event.kind for step in steps for event in step.estimate.events}
     assert {"initial_yaw", "odometry_gap"} <= kinds
     knowing = written(run_odometry(hard_run), tmp_path / "knowing")
