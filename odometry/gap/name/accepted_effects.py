@@ -14,7 +14,7 @@ from odometry.gap.locate.predictors import Predictor, predictors
 from odometry.gap.locate.variables import window_variables
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
-from odometry.gap.name.form_gates import is_the_main_part
+from odometry.gap.name.form_gates import is_special, is_the_main_part
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
 from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course
@@ -50,6 +50,7 @@ class Standing(Search):
         elif any(is_gradual_wheel_scale(effect) for effect in found.effects):
             found = of_their_form(self, sudden_instead(self, found), smooth)
         found = self._without_structure(self._standing(found, smooth), smooth)
+        found = self._for_itself(found, smooth)
         if not found.has_name and (found.steps or self.unexplained() or self.is_above):
             found = self._standing(with_course(self, found), smooth)
         refused = tuple(one for name, one in self.refusals.items() if name not in found.names)
@@ -100,6 +101,23 @@ class Standing(Search):
             if not isinstance(effect, Residual):
                 self.refuse(effect, reason)
         return self._standing(grown(self, found), smooth)
+
+    def _for_itself(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
+        """Without names that need a smooth function beside them, where no more such cost less.
+
+        But for forces of contacts, which are right and imperfect.
+        """
+        names = [effect for effect in found.effects if not isinstance(effect, Residual)]
+        beside = len(names) < len(found.effects)
+        if not names or not beside or any(name.slow for name in names):
+            return found
+        alone = grown(self, found)
+        if not alone.steps or len(alone.steps) > len(found.steps) or alone.cost >= found.cost:
+            return found
+        instead = next(effect for effect in alone.effects if isinstance(effect, Residual))
+        for name in names:
+            self.refuse(name, is_special(instead))
+        return self._standing(alone, smooth)
 
     def _held_out_left(self, found: Explanation) -> tuple[Gap, float]:
         """The gap that is left on held-out data, and the share of its excess that is closed.
