@@ -1,6 +1,7 @@
 """Locate the gap, name what is missing, add it, and measure what that closes."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from tqdm import tqdm
 
@@ -12,7 +13,7 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.measured import measured_of
-from odometry.gap.prepare.measures import measures_of
+from odometry.gap.prepare.measures import measures_of, shown_as_measured
 from odometry.gap.prepare.prepared import Prepared, prepared
 from odometry.gap.prepare.statistic import Measure, floor_there
 from odometry.independent_runs import check_no_run_twice
@@ -85,7 +86,10 @@ def find_gap(
 def _explained(
     ready: Prepared, fitter: Fitter, count: Callable[[], None]
 ) -> tuple[Explanation, Measure]:
-    """The explanation by the first measure that gives a name, or else by the last."""
+    """The explanation by the first measure that gives a name, or else by the last.
+
+    Nothing is "none" that another measure surely shows on the measured runs.
+    """
     config, known, (fitted, held_out) = ready.config, ready.known, ready.scenes
     for measure in measures_of(known, fitted, held_out, config, has_yaw=ready.has_yaw):
         floor = ready.floor(measure)
@@ -96,6 +100,10 @@ def _explained(
         found = explained(fitter, held_out, floors, config, count)
         if found.has_name:
             break
+    if not found.steps and not found.unexplained:
+        other = shown_as_measured(known, fitted, held_out, config, has_yaw=ready.has_yaw)
+        if other is not None:
+            return replace(found, unexplained=True), other
     return found, measure
 
 

@@ -138,7 +138,7 @@ def evidence_picture(result: GapResult, folder: Path) -> Picture | None:
         f"Evidence of the candidates {', '.join(rival.name for rival in rivals)}.",
         "Evidence of each candidate for the first effect: twice the log-likelihood gained on "
         "windows not fitted, less the penalty for its parameters."
-        + (" Blue: added." if any(rival.added for rival in rivals) else " None was added."),
+        + (" Blue: added." if any(rival.added for rival in rivals) else " None of them was added."),
     )
 
 

@@ -142,7 +142,7 @@ def write_gap_report(result: GapResult, out: Path) -> list[Path]:
         ),
         Section("Where it is", _where(result, folder)),
         Section("Over time", [time_picture(result, folder), worst_grid(result)]),
-        Section("Whole runs that were held out", rollout_pictures(result, folder)),
+        Section("Whole runs, open loop", rollout_pictures(result, folder)),
         Section("Evidence", _evidence(result, folder, share)),
         Section("In words", [Listing(details)]),
         Section("How to read this", [Paragraph(HOW)]),

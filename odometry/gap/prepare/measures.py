@@ -22,13 +22,10 @@ def measures_of(
     positions, and by many times that of its heading; a gyroscope at fault moves neither. By its
     error alone nothing is missing in a model: positions follow it, where it gives nothing a name.
     """
-    others = [Measure.HEADING] if has_yaw else []
-    if all(scene.reported_turns is not None for scene in (*measured, *held_out)):
-        others.append(Measure.GYROSCOPE)
     gap, floor = _on(known, held_out, config, Measure.POSITION)
     if gap.value > max(config.hardly * floor.value, floor.value + gap.doubt_above(floor)):
         return (Measure.POSITION,)
-    for measure in others:
+    for measure in _others(measured, held_out, has_yaw=has_yaw):
         shown = Shown(*(_on(known, scenes, config, measure) for scenes in (held_out, measured)))
         far = all(
             gap.value > config.turns_times * floor.value
@@ -37,6 +34,36 @@ def measures_of(
         if far and shown.is_sure(config.turns_above):
             return (measure,) if measure is Measure.HEADING else (measure, Measure.POSITION)
     return (Measure.POSITION,)
+
+
+def shown_as_measured(
+    known: Calibration,
+    measured: Sequence[DenseWindows],
+    held_out: Sequence[DenseWindows],
+    config: GapConfig,
+    *,
+    has_yaw: bool,
+) -> Measure | None:
+    """A measure besides positions that shows a gap on the measured runs, whatever is held out.
+
+    A gyroscope that warms up in the first minute is off there, and hardly in the pieces held out.
+    """
+    for measure in _others(measured, held_out, has_yaw=has_yaw):
+        gap, floor = _on(known, measured, config, measure)
+        far = gap.value > config.turns_times * floor.value
+        if far and gap.is_surely_above(floor, config.turns_above):
+            return measure
+    return None
+
+
+def _others(
+    measured: Sequence[DenseWindows], held_out: Sequence[DenseWindows], *, has_yaw: bool
+) -> list[Measure]:
+    """What was measured of the motion besides positions."""
+    others = [Measure.HEADING] if has_yaw else []
+    if all(scene.reported_turns is not None for scene in (*measured, *held_out)):
+        others.append(Measure.GYROSCOPE)
+    return others
 
 
 def _on(

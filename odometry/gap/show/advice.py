@@ -46,7 +46,7 @@ def what_to_do(result: GapResult) -> str:
 def _remedy(result: GapResult) -> str:
     if not result.effects:
         if is_not_held_out(result):
-            return "Hold out runs that are driven as the measured ones are (--holdout)."
+            return "Hold out whole runs that are driven as the measured ones are (--holdout)."
         if result.verdict == "unknown":
             return "Look at the worst stretches in report.html, and record what may differ there."
         if is_doubtful(result):

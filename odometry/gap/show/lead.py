@@ -157,7 +157,9 @@ def _how_sure(result: GapResult, share: Share | None) -> str:
         )
     floor = f"the noise floor is {with_interval(held.noise_floor)}"
     if not result.effects:
-        return f"{what} is {with_interval(held.before)}; {floor}."
+        as_measured = of_two_figures(result.closings[0].before)
+        there = f", on the measured runs {as_measured}" if is_not_held_out(result) else ""
+        return f"{what} is {with_interval(held.before)}{there}; {floor}."
     if all(isinstance(effect.added.effect, RoundedPositions) for effect in result.effects):
         rest = ""
         if held.before.is_above(held.noise_floor):

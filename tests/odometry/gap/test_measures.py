@@ -99,3 +99,14 @@ def test_without_a_change_nothing_is_missing(rough):
     assert found.verdict == "none"
     assert found.turns is None
     assert content_of(found)["turns"] is None
+
+
+def test_a_gyroscope_at_fault_as_measured_is_not_none(rough):
+    """It was not on the runs held out: nothing is named, and nothing is "none"."""
+    found = find_gap([rough(13, gyroscope=1.15)], [rough(11), rough(12)], [rough(14)])
+    assert found.verdict == "unknown"
+    assert found.turns[0].before.measure is Measure.GYROSCOPE
+    missing, how_sure, to_do = lead(found)
+    assert "on the measured runs (unknown), and held-out data do not show it" in missing
+    assert "on the measured runs 0." in how_sure
+    assert to_do.startswith("Hold out whole runs")

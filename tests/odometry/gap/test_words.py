@@ -155,7 +155,7 @@ def test_a_gap_that_only_the_measured_runs_show_asks_for_another_run_to_hold_out
     measured = replace(none_result.measured, before=Gap(0.2, 0.15, 0.3))
     first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", measured=measured))
     assert "on the measured runs (unknown), and held-out data do not show it" in first
-    assert to_do.startswith("Hold out runs that are driven as the measured ones are")
+    assert to_do.startswith("Hold out whole runs that are driven as the measured ones are")
 
 
 def test_unknown_that_a_fault_of_the_reference_explains_as_well_says_so(none_result):
@@ -187,7 +187,7 @@ def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
     )
     left = unknown_result.holdout.after.value - unknown_result.holdout.noise_floor.value
     assert f"{left:.2g} m stays unexplained" in said[1]
-    assert said[2] == "Look for what depends on this variable."
+    assert said[2] == "Look for a cause that depends on this."
 
 
 def test_an_effect_by_which_the_ends_come_no_nearer_says_what_does(scaled_result):

@@ -1,0 +1,51 @@
+"""A name beside smooth functions, where as many of these alone cost less."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from odometry.effects.contact_effects import InertiaByContact
+from odometry.effects.inertia_icr import InertiaByIndices
+from odometry.effects.residual import Residual
+from odometry.gap.name.accepted_effects import Standing
+from odometry.gap.name.explanation import Explanation
+
+SMOOTH = [Residual(name, (("v_y", 0),), "", (0.0, 1.0)) for name in ("curvature", "speed", "time")]
+
+
+class Costing(Explanation):
+    """An explanation that says what it costs."""
+
+    cost = property(lambda self: self.start)
+
+
+def explanation(cost, *effects):
+    return Costing(cost, tuple(SimpleNamespace(effect=one, fitted=None) for one in effects), ())
+
+
+@pytest.mark.parametrize(
+    ("effects", "alone", "expected"),
+    [
+        pytest.param([InertiaByIndices(), SMOOTH[0]], (99.0, 1), "unknown", id="one costs less"),
+        pytest.param([InertiaByIndices(), SMOOTH[0]], (99.0, 2), "unknown", id="as many"),
+        pytest.param([InertiaByIndices(), SMOOTH[0]], (99.0, 3), "inertia", id="it takes more"),
+        pytest.param([InertiaByIndices(), SMOOTH[0]], (100.0, 1), "inertia", id="no less"),
+        pytest.param([InertiaByIndices(), SMOOTH[0]], (50.0, 0), "inertia", id="nothing alone"),
+        pytest.param([InertiaByIndices()], (99.0, 1), "inertia", id="nothing beside it"),
+        pytest.param([InertiaByContact(), SMOOTH[0]], (99.0, 1), "inertia", id="contact forces"),
+    ],
+)
+def test_it_stands_by_what_it_does_for_itself(monkeypatch, effects, alone, expected):
+    found, (cost, count) = explanation(100.0, *effects), alone
+    smooth = explanation(cost, *SMOOTH[:count])
+    monkeypatch.setattr("odometry.gap.name.accepted_effects.grown", lambda *_: smooth)
+    refused = {}
+    search = SimpleNamespace(
+        refuse=lambda effect, reason: refused.update({effect.name: reason}),
+        _standing=lambda found, _: replace(found),
+    )
+    left = Standing._for_itself(search, found, ())
+    assert left.effects[0].name == expected
+    why = "a smooth function of curvature explains more in its place"
+    assert refused == ({"inertia": why} if expected == "unknown" else {})
