@@ -70,8 +70,8 @@ def _drift(replay: Replay, biases: FloatArray, stated: float, known: IntArray) -
     if abs(off) <= FOLLOWED_SIGMAS * stated:
         return _event(replay, known, DRIFT_FOLLOWED, f"{text}: the filter followed a drift")
     text += (
-        f", the estimated one was off by {abs(off):.4f} rad/s in the mean, where the filter "
-        f"states {stated:.4f}: a drift that was not followed"
+        f" and was off by {abs(off):.4f} rad/s in the mean, where the filter states "
+        f"{stated:.4f}: a drift that was not followed"
     )
     return _event(replay, known, "gyroscope_drift", text)
 

@@ -63,6 +63,36 @@ def test_each_fault_is_found(browser, tmp_path, kind):
     assert any(f": {kind}" in fault for fault in faults(browser, page, None))
 
 
+@needs_browser
+def test_numbers_stay_on_one_line_of_a_small_screen(browser, tmp_path):
+    """A table scrolls there; a sentence in a cell is broken, but not after every word."""
+    row = ["gravel", "0.269 ± 0.020", "0.1207 m (0.1108 to 0.1300)", WORDS, "grass, sand"]
+    blocks = [Grid(["terrain", "y_left [m]", "before", "remarks", "others"], [row])]
+    page = write_page(tmp_path / "report.html", "A title", "", [Section("A section", blocks)])
+    browser("Emulation.setEmulatedMedia", media="screen")
+    browser("Emulation.setDeviceMetricsOverride", width=400, height=900,
+            deviceScaleFactor=1, mobile=True)  # fmt: skip
+    browser.open(page)
+    lines = """[...document.querySelectorAll('td')].map(cell => {
+      const text = document.createRange();
+      text.selectNodeContents(cell);
+      return Math.round(text.getBoundingClientRect().height / 24);
+    })"""
+    number, interval, words, names = browser.value(lines)
+    assert (number, interval, names) == (1, 1, 1)
+    assert 2 <= words <= 16
+
+
+@needs_browser
+def test_a_page_that_does_not_exist_is_an_error(tmp_path):
+    ran = subprocess.run(
+        [sys.executable, "-m", "tests.studies.pages", str(tmp_path / "missing.html")],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    assert "missing.html" in ran.stderr
+
+
 def test_without_a_browser_it_says_so(tmp_path):
     environment = os.environ | {"PATH": str(tmp_path), "PYTHONPATH": str(ROOT)}
     ran = subprocess.run(

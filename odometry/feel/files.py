@@ -33,9 +33,9 @@ def shares(felt: Felt) -> dict[str, float]:
 
 
 def answer_words(felt: Felt) -> str:
-    """How much of the time feels like what."""
+    """Which share of the time feels like what."""
     said = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares(felt).items())
-    return f"Of the time: {said}."
+    return f"Answers, by their share of the time: {said}."
 
 
 def is_unlike(felt: Felt) -> bool:

@@ -5,6 +5,7 @@ from math import degrees
 
 import numpy as np
 
+from odometry.digits import within_interval, within_sigma
 from odometry.effects.tables import effects_of
 from odometry.identification.fit import Fit
 from odometry.identification.identification import Identified
@@ -102,6 +103,7 @@ def _variables(found: Identified) -> list[tuple[str, ...]]:
     sigmas, intervals = fit.sigmas, fit.intervals
     for parameter in fit.model.parameters:
         name, value = parameter.name, fit.values[parameter.name]
+        number = f"{value:.5g}"
         if name in fit.by_trial:
             cells = ("by trial", "", "", "", f"{fit.start[name]:.5g}")
         elif name not in sigmas:
@@ -113,9 +115,10 @@ def _variables(found: Identified) -> list[tuple[str, ...]]:
         else:
             of, sigma = intervals[name], sigmas[name]
             share = f"{100 * sigma / abs(value):.1f} %" if value else ""
+            number, low, high = within_interval(value, of.low, of.high)
             start = f"{fit.start[name]:.5g}"
-            cells = (f"{sigma:.3g}", share, f"{of.low:.5g}", f"{of.high:.5g}", start)
-        rows.append((name, f"{value:.5g}", *cells, parameter.unit))
+            cells = (within_sigma(value, sigma)[1], share, low, high, start)
+        rows.append((name, number, *cells, parameter.unit))
     return rows
 
 

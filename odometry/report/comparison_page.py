@@ -1,5 +1,6 @@
 """One page and its figures from a comparison."""
 
+from collections import Counter
 from pathlib import Path
 
 from odometry.comparison.result import Comparison
@@ -28,13 +29,12 @@ Block = Paragraph | Listing | Grid | Picture
 
 FIGURES = ("errors", "speed_plane", "horizons", "rotation", "training_horizons")
 HOW = (
-    "Every window is evaluated with a model that was not identified on it; the tables say on which "
-    "runs it was. "
-    "Errors are per metre of wheel travel. Windows are distinct; they may straddle changes of "
-    "`window` (joints of chained reference poses), where the reference is less certain, but no "
-    "gaps; that is the same for every model. Intervals are 95 % intervals of paired differences "
-    "by a bootstrap of runs and of blocks of neighbouring windows. Each is of one pair of models: "
-    "of many such intervals some miss by chance."
+    "Every window is evaluated with a model that was not identified on it; the tables name the "
+    "runs that it was identified on. Errors are per metre of wheel travel. Windows are distinct; "
+    "they may lie across joints of chained reference poses, where the reference is less certain, "
+    "but across no gaps; that is the same for every model. Intervals are 95 % intervals of paired "
+    "differences by a bootstrap of runs and of blocks of neighbouring windows. Each is of one pair "
+    "of models: of many such intervals some miss by chance."
 )
 
 
@@ -82,17 +82,40 @@ def lead(comparison: Comparison) -> str:
         contradicted = comparison.contradictions_at(comparison.places[0])
         others = [each for each in contradicted if each != said[0]]
         return " ".join([*said[:1], *others]) or "No model could be evaluated."
-    least: dict[str, int] = {}
-    for place in comparison.places:
-        complete = [summary for summary in comparison.summaries_at(place) if summary.complete]
-        if complete:
-            best = min(complete, key=lambda summary: summary.means["translation"]).model
-            least[best] = least.get(best, 0) + 1
-    counts = ", ".join(f"{model} {count} times" for model, count in least.items())
-    places = len(comparison.places)
+    best = {place: _best(comparison, place) for place in comparison.places}
+    counts = Counter(model for model in best.values() if model)
+    words = " and ".join(f"with {model} in {count}" for model, count in counts.items())
+    said = [
+        f"The mean translation error is smallest {words} of {len(best)} comparisons (of one robot, "
+        "terrain and horizon each)."
+        if words
+        else "No model could be evaluated."
+    ]
+    equal = sum(_is_equalled(comparison, place, model) for place, model in best.items())
+    if equal:
+        said.append(f"In {equal} of them another model cannot be distinguished from the best one.")
     count = sum(bool(comparison.contradictions_at(place)) for place in comparison.places)
-    return f"Least mean translation error at {places} places: {counts or 'none'}." + (
-        f" At {count} of them medians or whole runs give another order; see there." if count else ""
+    if count:
+        said.append(f"In {count} of them medians or whole runs give another order; see there.")
+    return " ".join(said)
+
+
+def _best(comparison: Comparison, place: Place) -> str:
+    """The model with the smallest mean translation error, empty where none was evaluated."""
+    means = {
+        summary.model: summary.means["translation"]
+        for summary in comparison.summaries_at(place)
+        if summary.ranked
+    }
+    return min(means, key=means.__getitem__, default="")
+
+
+def _is_equalled(comparison: Comparison, place: Place, model: str) -> bool:
+    """Whether the interval of a difference of translation errors with a model holds zero."""
+    return any(
+        each.quantity == "translation" and each.interval.holds_zero
+        for each in comparison.differences_at(place)
+        if model in (each.first, each.second)
     )
 
 

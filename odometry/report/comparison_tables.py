@@ -7,6 +7,7 @@ import numpy as np
 from odometry.comparison.result import Comparison
 from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import NOT_IDENTIFIED, Place, Summary
+from odometry.digits import within_sigma
 from odometry.report.html import Grid
 
 
@@ -26,8 +27,8 @@ def error_grid(comparison: Comparison) -> Grid:
         for summary in comparison.summaries_at(place)
     ]
     header = (
-        *("robot", "terrain", "horizon m", "model", "windows"),
-        *("m per m: mean", "median", "degrees per m: mean", "median"),
+        *("robot", "terrain", "horizon [m]", "model", "windows"),
+        *("mean [m per m]", "median [m per m]", "mean [degrees per m]", "median [degrees per m]"),
     )
     return Grid(header, rows, "Held-out errors per metre of wheel travel.")
 
@@ -44,7 +45,7 @@ def quartile_grid(comparison: Comparison, place: Place) -> Grid:
         )
         for summary in comparison.summaries_at(place)
     ]
-    header = ("model", "windows", "m per m: quartiles", "degrees per m: quartiles", "remarks")
+    header = ("model", "windows", "quartiles [m per m]", "quartiles [degrees per m]", "remarks")
     return Grid(header, rows)
 
 
@@ -54,7 +55,11 @@ def split_grid(comparison: Comparison, place: Place) -> Grid:
         (evaluation.run, evaluation.training_runs, str(len(evaluation.windows)))
         for evaluation in comparison.evaluations_at(place)
     )
-    return Grid(("evaluated run", "identified on", "windows"), list(rows), "The split.")
+    return Grid(
+        ("evaluated run", "identified on", "windows"),
+        list(rows),
+        "Runs that the models of each evaluated run were identified on.",
+    )
 
 
 def difference_grid(found: Sequence[Difference]) -> Grid:
@@ -85,10 +90,10 @@ def fitness_grid(comparison: Comparison) -> Grid:
         )
         for each in comparison.fitness
     ]
-    header = ("run", "model", "N", "x m²", "y m²", "z m²", "yaw rad²", "J / N")
+    header = ("run", "model", "N", "x [m²]", "y [m²]", "z [m²]", "yaw [rad²]", "J / N")
     caption = (
-        "Mean squared errors of dead reckoning from the first pose to the end, held out (as "
-        "Martinez 2024 eq. 13 and Table II)."
+        "Mean squared errors of dead reckoning from the first pose to the end, held out. N: "
+        "poses; J / N: the sum of the four (Martinez 2024, eq. 13 and Table II)."
     )
     return Grid(header, rows, caption)
 
@@ -102,7 +107,9 @@ def parameter_grid(comparison: Comparison) -> Grid:
                 zip(table.covariance_order, np.sqrt(np.diag(table.covariance)), strict=True)
             )
             words = [
-                f"{name} {value:.4g}" + (f" ± {sigmas[name]:.2g}" if name in sigmas else "")
+                f"{name} " + " ± ".join(within_sigma(value, sigmas[name]))
+                if name in sigmas
+                else f"{name} {value:.4g}"
                 for name, value in table.values.items()
             ]
             rows.append((f"{robot} on {terrain}", model, ", ".join(words)))
@@ -114,10 +121,10 @@ def settings_grid(comparison: Comparison) -> Grid:
     """Every setting that was used."""
     config = comparison.config
     values = {
-        "evaluation horizons m": ", ".join(f"{h:g}" for h in config.horizons_m),
-        "training horizons m": ", ".join(f"{h:g}" for h in config.training_horizons_m) or "-",
+        "evaluation horizons [m]": ", ".join(f"{h:g}" for h in config.horizons_m),
+        "training horizons [m]": ", ".join(f"{h:g}" for h in config.training_horizons_m) or "-",
         "draws": config.draws,
-        "block m": config.block_m,
+        "block [m]": config.block_m,
         "seed": config.seed,
         **{f"training.{name}": value for name, value in vars(config.training).items()},
         **{f"solver.{name}": value for name, value in vars(config.solver).items()},

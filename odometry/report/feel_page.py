@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
 from odometry.feel.felt import SILENT
-from odometry.feel.files import sentences, shares
+from odometry.feel.files import sentences
 from odometry.feel.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.modes.mode_set import NONE_OF_THESE
@@ -24,7 +24,8 @@ ALT = "Answers and the probability of each terrain over time."
 CAPTION = (
     "Answers by the last stretch and by single windows, the terrain that the run names, and the "
     "probability of each terrain by the last stretch (black is certain). Hatched: unlike every "
-    "terrain of the model. Blank: undetermined, stationary or not measured."
+    "terrain of the model. Grey: a terrain that the model does not have. Blank: undetermined, "
+    "stationary or not measured."
 )
 
 
@@ -88,10 +89,9 @@ LENGTHS = {"window": "window", "stretch": "stretch of 10 s", "run": "run"}
 def write_feel_report(felt: Felt, out: Path) -> list[Path]:
     """Write `figures/feel.png` and `report.html`; the files written are returned."""
     picture = feel_picture(felt, Path(out) / "figures")
-    rows = [(name, f"{100 * share:.0f} %") for name, share in shares(felt).items()]
     sections = [
         Section("In short", [Listing(sentences(felt))]),
-        Section("Over time", [picture, Grid(("answer", "share of the time"), rows)]),
+        Section("Over time", [picture]),
         Section("The model, on runs held out from training", accuracy_blocks(felt.model)),
         Section("Settings", [_settings(felt)]),
         Section("How to read this", [Paragraph(HOW)]),

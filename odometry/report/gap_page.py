@@ -188,7 +188,7 @@ def event_grids(result: GapResult) -> list[Grid]:
         runs = [words_of_events(events) for events in events_of(effect)]
         if any(runs):
             rows = list(zip(folders, runs, strict=False))
-            grids.append(Grid(("run", "run time s"), rows, f"When: {effect.in_words}."))
+            grids.append(Grid(("run", "run time [s]"), rows, f"When: {effect.in_words}."))
     return grids
 
 

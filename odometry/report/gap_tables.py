@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from odometry.digits import three_figures, within_interval, within_sigma
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.answer.result import Closing, GapResult
 from odometry.gap.config import GapConfig
 from odometry.gap.locate.region_words import noun_of
 from odometry.gap.prepare.statistic import squared_errors
-from odometry.gap.show.quantities import Share, evidence_words, percent, rounded, with_interval
-from odometry.gap.show.words import moves_of
+from odometry.gap.show.quantities import Share, evidence_words, percent, with_interval
+from odometry.gap.show.words import Moved, moves_of
 from odometry.report.html import Grid
 
 PART_S = GapConfig.part_s
@@ -43,15 +44,15 @@ def effect_grid(result: GapResult) -> Grid:
             effect.added.effect.acts_on,
             effect.added.effect.equation,
             effect.added.effect.source,
-            f"{effect.gap_before:.3g}",
-            f"{effect.gap_after:.3g}",
+            three_figures(effect.gap_before),
+            three_figures(effect.gap_after),
             f"{effect.evidence:.0f}",
         )
         for effect in result.effects
     ]
     header = (
         *("effect", "form", "acts on", "equation", "source"),
-        *("gap before m", "after m", "evidence"),
+        *("gap before [m]", "after [m]", "evidence"),
     )
     return Grid(header, rows, "In the order added; gaps on the measured runs.")
 
@@ -65,7 +66,7 @@ def parameter_grid(result: GapResult) -> Grid:
             continue  # its shape is drawn
         columns = (added.effect.parameters, added.values, effect.low, effect.high)
         for parameter, *ends in zip(*columns, strict=True):
-            value, low, high = rounded(*map(float, ends))
+            value, low, high = within_interval(*map(float, ends))
             unit = parameter.unit or "-"
             rows.append((added.effect.name, parameter.name, value, f"{low} to {high}", unit))
     return Grid(("effect", "parameter", "value", "95 % interval", "unit"), rows)
@@ -81,18 +82,26 @@ def base_grid(result: GapResult) -> Grid:
         )
     ]
     numbers.append(("latency", "s", before.latency_s, after.latency_s))
-    sigmas = {one.name: one.sigmas for one in moves_of(result.calibration, result.base)}
+    moves = {one.name: one for one in moves_of(result.calibration, result.base)}
     rows = [
-        (name, f"{old:.4g}", f"{new:.4g}", unit, f"{sigmas[name]:.1f}" if name in sigmas else "-")
+        (name, *_moved(moves[name]), unit, f"{moves[name].sigmas:.1f}")
+        if name in moves
+        else (name, three_figures(old), three_figures(new), unit, "-")
         for name, unit, old, new in numbers
     ]
     caption = (
-        f"The model {before.model.name}: as calibrated, and moved when the effects were fitted, "
-        "in standard deviations of its calibration. Latency: by how much the robot always follows "
-        "its recorded speeds late."
+        f"The model {before.model.name}: as calibrated, with one standard deviation, and after the "
+        "fit to the measured runs. Latency: by how much the robot always follows its recorded "
+        "speeds late."
     )
-    heads = ("parameter", "calibrated", "with the effects", "unit", "moved by sigmas")
+    heads = ("parameter", "calibrated", "after", "unit", "moved by sigmas")
     return Grid(heads, rows, caption)
+
+
+def _moved(move: Moved) -> tuple[str, str]:
+    """Before, with its standard deviation, and after."""
+    before, sigma = within_sigma(move.before, move.sigma)
+    return f"{before} ± {sigma}", within_sigma(move.after, move.sigma)[0]
 
 
 def rival_grid(result: GapResult) -> Grid:
@@ -103,7 +112,7 @@ def rival_grid(result: GapResult) -> Grid:
             r.form_in_words,
             f"{round(r.evidence)}",
             evidence_words(r.evidence),
-            f"{r.gap_after:.3g}",
+            three_figures(r.gap_after),
         )
         for r in result.rivals
     ]
@@ -111,7 +120,7 @@ def rival_grid(result: GapResult) -> Grid:
         "Candidates for the first effect. Evidence: twice the log-likelihood gained on windows not "
         "fitted, less the penalty for parameters; gaps on the measured runs."
     )
-    return Grid(("candidate", "form", "evidence", "in words", "gap after m"), rows, caption)
+    return Grid(("candidate", "form", "evidence", "in words", "gap after [m]"), rows, caption)
 
 
 def region_grid(result: GapResult) -> Grid:
@@ -120,7 +129,7 @@ def region_grid(result: GapResult) -> Grid:
         (
             region.words,
             "; ".join(_bound(n, low, high) for n, (low, high) in region.bounds.items()) or "-",
-            f"{region.excess_m:.3g}",
+            three_figures(region.excess_m),
             f"{100 * region.share:.0f} %",
         )
         for region in result.location.regions
@@ -130,7 +139,7 @@ def region_grid(result: GapResult) -> Grid:
         "the other half. Excess: RMS position error less the noise floor; share: of the squared "
         "errors beyond noise."
     )
-    return Grid(("where", "bounds (SI)", "excess m", "share"), rows, caption)
+    return Grid(("where", "bounds (SI)", "excess [m]", "share"), rows, caption)
 
 
 def worst_grid(result: GapResult) -> Grid:
@@ -145,12 +154,12 @@ def worst_grid(result: GapResult) -> Grid:
             rms = (float(np.sqrt(of[own].mean())) for of in (before, after))
             rows.append((scene.run.name, number * PART_S, *rms))
     worst = sorted(rows, key=lambda row: -row[3])[:WORST]
-    header = ("run", "run time s", "before m", "after m")
+    header = ("run", "run time [s]", "before [m]", "after [m]")
     caption = f"The {len(worst)} stretches of {PART_S:g} s that are worst after the effects."
     return Grid(
         header,
         [
-            (name, f"{begin:.0f} to {begin + PART_S:.0f}", f"{old:.3g}", f"{new:.3g}")
+            (name, f"{begin:.0f} to {begin + PART_S:.0f}", three_figures(old), three_figures(new))
             for name, begin, old, new in worst
         ],
         caption,

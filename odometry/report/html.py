@@ -33,6 +33,8 @@ tbody th { min-width: 7.5rem; }
 @media screen and (max-width: 45rem) {
   figure img { max-width: none; width: calc(var(--width) / 2); }
   th, td { padding: .25rem .4rem; }
+  td { white-space: nowrap; }
+  td.words { white-space: normal; min-width: 15rem; }
   caption { max-width: calc(100vw - 2rem); }
 }
 @page { size: A4; margin: 1cm; }

@@ -13,6 +13,7 @@ from odometry.arrays import FloatArray
 from odometry.comparison.files import file_name
 from odometry.comparison.summary import QUANTITIES
 from odometry.comparison.training_horizons import HorizonErrors, best_training_horizons
+from odometry.digits import three_figures
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture
 
@@ -93,7 +94,7 @@ def _plot_medians(
             axes.text(
                 column,
                 row,
-                f"{median:.3g}",
+                three_figures(median),
                 ha="center",
                 va="center",
                 fontsize=8,

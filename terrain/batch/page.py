@@ -18,8 +18,8 @@ HEADER = (
 )
 HOW = (
     "Mean errors per metre of wheel travel, worst odometer first. The estimate is evaluated with "
-    "the truth, or by poses that were withheld from it. A run with a flag may mislead: what it "
-    "learned is not merged."
+    "the truth, or by poses that were withheld from it. A run with a flag may mislead, as the "
+    "notes say: what it learned is not merged."
 )
 
 
@@ -27,7 +27,7 @@ def write_batch_page(rows: Sequence[Row], learned: Learned, file: Path) -> Path:
     """Write the page; each run that was replayed is a link to its own."""
     done = sorted((row for row in rows if not row.error), key=_badness, reverse=True)
     failed = [row for row in rows if row.error]
-    noted = [row for row in done if row.notes]
+    noted = [row for row in done if _of_run(row)]
     merged = [_terrain_grid(name, of) for name, of in learned.terrains.items()]
     sections = [
         Section("Failed", [_failures(failed)] if failed else []),
@@ -74,7 +74,7 @@ def _runs(rows: Sequence[Row]) -> Grid:
             number(row.numbers["wheel_travel_m"], 1),
             number(row.numbers["duration_s"], 1),
             str(row.counts["switches"]),
-            " ".join(row.flags).replace("_", " "),
+            str(len(row.flags)) if row.flags else NOTHING,
         )
         for row in rows
     ]
@@ -86,7 +86,12 @@ def _failures(rows: Sequence[Row]) -> Grid:
 
 
 def _notes(rows: Sequence[Row]) -> Grid:
-    return Grid(("run", "note"), [(row.name, note) for row in rows for note in row.notes])
+    return Grid(("run", "note"), [(row.name, note) for row in rows for note in _of_run(row)])
+
+
+def _of_run(row: Row) -> list[str]:
+    flags = ", ".join(flag.replace("_", " ") for flag in row.flags)
+    return [*([f"Flags: {flags}."] if flags else []), *row.notes]
 
 
 def _terrain_grid(name: str, of: MergedTerrain) -> Grid:

@@ -87,7 +87,7 @@ def plot_labels(
     ----------
     axes : Axes
     image_labels : sequence of ImageLabel
-        A point each, the paler the less sure; without a label a tick in a row of its own.
+        A point each, the paler the less sure; without a label a cross in a row of its own.
     in_force, truth : sequences of Stretch
         Drawn as bars; `truth` may be empty.
     tints : Mapping of terrain to colour
@@ -103,8 +103,9 @@ def plot_labels(
             [row] * len(shown),
             s=26,
             c=np.column_stack([np.zeros((len(shown), 3)), 0.15 + 0.75 * np.clip(sure, 0, 1)]),
-            marker="|" if name == NO_LABEL else "o",
-            linewidths=0.8 if name == NO_LABEL else 0.0,
+            marker="x" if name == NO_LABEL else "o",
+            linewidths=1.2 if name == NO_LABEL else 0.0,
+            clip_on=False,  # the first image may be that of the left edge
             zorder=3,
             gid=name,
         )

@@ -50,13 +50,14 @@ def write_reliability_figure(
     chance = reliability_by_chance(found.probabilities, photos)
 
     def draw(figure: Figure) -> None:
-        above = figure.add_axes((0.14, 0.36, 0.83, 0.52))
+        above = figure.add_axes((0.14, 0.36, 0.83, 0.50))
         below = figure.add_axes((0.14, 0.09, 0.83, 0.2), sharex=above)
         plot_reliability(above, seen, chance)
         _plot_counts(below, seen)
         figure.suptitle(
             "How often answers were right in cross-validation\n"
-            f"off by {seen.expected_error:.3f} in the mean; exact probabilities would seem off by "
+            f"off by {seen.expected_error:.3f} in the mean;\n"
+            "exact probabilities would seem off by "
             f"{chance.expected_error:.3f} by chance",
             fontsize=10,
             y=0.97,
@@ -76,7 +77,8 @@ def plot_reliability(axes: Axes, seen: Reliability, chance: ReliabilityByChance)
     axes.bar(middle, spread, 0.06, chance.lowest[used], color=_CHANCE,
              label="by chance, of exact probabilities (95 %)")  # fmt: skip
     axes.plot([0, 1], [0, 1], color="black", linewidth=0.8, label="exact")
-    axes.plot(middle, seen.accuracies[used], "o", color=_RIGHT, label="answers of each tenth")
+    axes.plot(middle, seen.accuracies[used], "o", color=_RIGHT, clip_on=False,
+              label="answers of each tenth")  # fmt: skip
     axes.set(xlim=(0, 1), ylim=(0, 1.02), ylabel="share that is right")
     axes.legend(loc="lower right", frameon=False, fontsize=8.5)
 

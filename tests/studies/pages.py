@@ -141,6 +141,8 @@ def main() -> None:
     if program is None:
         print("No Chromium is installed, so no page was checked. Debian: apt-get install chromium")
         sys.exit(2)
+    if missing := [str(page) for page in given.pages if not page.is_file()]:
+        parser.error(f"there is no {', '.join(missing)}")
     failed = False
     with Browser(program) as browser:
         for page in given.pages:

@@ -1,10 +1,10 @@
 """Quantities of a gap as text, and the share of the excess that effects close."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from odometry.digits import within_interval
 from odometry.gap.answer.result import GapResult
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.statistic import MANY, SEED, Gap, drawn_gaps, squared_errors
@@ -71,7 +71,7 @@ def of_two_figures(gap: Gap) -> str:
 
 def with_interval(gap: Gap) -> str:
     """A gap and its 95 % interval, and from how many stretches that comes where they are few."""
-    value, low, high = rounded(gap.value, gap.low, gap.high)
+    value, low, high = within_interval(gap.value, gap.low, gap.high)
     return f"{value} {gap.measure.unit} ({_interval(f'{low} to {high}', gap.pieces)})"
 
 
@@ -79,18 +79,6 @@ def percent(share: Share) -> str:
     """A share and its 95 % interval, as `with_interval` writes it."""
     interval = f"{100 * share.low:.0f} to {100 * share.high:.0f}"
     return f"{100 * share.value:.0f} % ({_interval(interval, share.pieces)})"
-
-
-def rounded(value: float, low: float, high: float) -> tuple[str, str, str]:
-    """A value and the ends of its interval, to a tenth of half the interval's length.
-
-    Three figures where the interval has no length.
-    """
-    half = (high - low) / 2
-    if not (math.isfinite(half) and half > 0):
-        return f"{value:.3g}", f"{low:.3g}", f"{high:.3g}"
-    decimals = max(0, 1 - math.floor(math.log10(half)))
-    return f"{value:.{decimals}f}", f"{low:.{decimals}f}", f"{high:.{decimals}f}"
 
 
 def evidence_words(evidence: float) -> str:

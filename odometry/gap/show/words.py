@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.checks.warned import faults_words
+from odometry.digits import within_interval
 from odometry.effects.base_model import Base
 from odometry.effects.residual import Residual
 from odometry.gap.answer.result import GapResult, NamedEffect
@@ -13,7 +14,7 @@ from odometry.gap.locate.region_words import EVERYWHERE, noun_of, noun_of_residu
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.show.by_run import runs_differ
 from odometry.gap.show.lead import lead
-from odometry.gap.show.quantities import evidence_words, metres, rounded, with_interval
+from odometry.gap.show.quantities import evidence_words, metres, with_interval
 
 REGIONS, VARIABLES = 2, 4  # that are named
 SHORT = 4  # parameters that are given one by one
@@ -111,14 +112,14 @@ def parameter_words(effect: NamedEffect) -> Sequence[str]:
         if ends[0] == p.absent:
             said.append(f"{p.name}: none")
             continue
-        value, low, high = rounded(*map(float, ends))
+        value, low, high = within_interval(*map(float, ends))
         said.append(f"{p.name} = {value}{' ' + p.unit if p.unit else ''} ({low} to {high})")
     return said
 
 
 @dataclass(frozen=True)
 class Moved:
-    """A number of the base: as calibrated, as it is with the effects, and how sure it was."""
+    """A number of the base: as calibrated, as it is after the fit, and how sure it was."""
 
     name: str
     unit: str

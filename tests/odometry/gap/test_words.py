@@ -17,7 +17,6 @@ from odometry.gap.show.quantities import (
     evidence_words,
     held_out_share,
     percent,
-    rounded,
     with_interval,
 )
 from odometry.gap.show.words import sentences
@@ -248,20 +247,6 @@ def test_an_interval_is_stated_only_of_several_stretches():
         assert with_interval(Gap(0.0498, 0.04, 0.06, pieces)) == words
     assert percent(Share(0.9, 0.9, 0.9, 1)) == "90 % (no interval from one stretch)"
     assert percent(Share(0.9, 0.8, 1.0, 4)) == "90 % (80 to 100, from only 4 stretches)"
-
-
-@pytest.mark.parametrize(
-    ("value", "low", "high", "expected"),
-    [
-        (0.66827, 0.61, 0.73, ("0.668", "0.610", "0.730")),
-        (0.66827, 0.1, 1.3, ("0.67", "0.10", "1.30")),
-        (67.64, 40.0, 90.0, ("68", "40", "90")),
-        (0.66827, 0.66827, 0.66827, ("0.668", "0.668", "0.668")),
-        (1.0, float("-inf"), float("inf"), ("1", "-inf", "inf")),
-    ],
-)
-def test_digits_are_those_that_the_interval_allows(value, low, high, expected):
-    assert rounded(value, low, high) == expected
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.digits import within_interval, within_sigma
 from odometry.identification.identify import identify
 from odometry.identification.report import correlations, in_short, report
 from odometry.identification.start import SolverConfig
@@ -27,11 +28,11 @@ def test_each_variable_stands_with_its_interval_and_where_it_started(found):
     assert lines[0] == "[gravel] icr"
     for name, of in found.fit.intervals.items():
         row = [cell for cell in cells(lines, name) if cell != "%"]
-        value, sigma, share, low, high, start = map(float, row[1:7])
-        assert value == pytest.approx(found.fit.values[name], rel=1e-4)
-        assert sigma == pytest.approx(found.fit.sigmas[name], rel=1e-2)
+        value, sigma = found.fit.values[name], found.fit.sigmas[name]
+        assert (row[1], *row[4:6]) == within_interval(value, of.low, of.high)
+        assert row[2] == within_sigma(value, sigma)[1]
+        share, start = float(row[3]), float(row[6])
         assert share == pytest.approx(100 * sigma / abs(value), abs=0.06)
-        assert (low, high) == pytest.approx((of.low, of.high), rel=1e-4)
         assert start == {"y": 0.375, "a": 1.0}[name[0]] * (-1 if name == "y_right" else 1)
     assert cells(lines, "x_icr") == ["x_icr", "0.06", "given", "m"]
 

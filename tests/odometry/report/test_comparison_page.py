@@ -1,5 +1,6 @@
 """The page of a comparison: every figure is drawn, every number is that of the comparison."""
 
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -11,6 +12,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.report.comparison_page import lead, write_comparison_report
+from odometry.report.comparison_tables import parameter_grid
 from odometry.run import Run
 
 MODELS = ("differential_drive", "icr_symmetric", "icr_slope")
@@ -103,14 +105,54 @@ def test_the_numbers_on_the_page_are_those_of_the_comparison(written, compared):
     assert any("0 windows are tilted" in cell for cell in cells)
 
 
+def test_parameters_have_the_digits_that_their_deviations_allow(compared):
+    pairs = re.findall(r"(-?[\d.]+) ± ([\d.]+)", str(parameter_grid(compared).rows))
+    assert len(pairs) >= 4  # of `icr_symmetric` on two terrains
+    for value, sigma in pairs:
+        assert len(value.partition(".")[2]) == len(sigma.partition(".")[2])
+        assert len(sigma.replace(".", "").lstrip("0")) == 2
+
+
 def test_the_lead_counts_where_the_error_of_a_model_is_smallest(compared):
-    assert lead(compared).startswith("Least mean translation error at 2 places: icr_symmetric 2")
+    assert lead(compared).startswith(
+        "The mean translation error is smallest with icr_symmetric in 2 of 2 comparisons"
+    )
     place = compared.places[0]
     alone = replace(
         compared,
         split_models=tuple(p for p in compared.split_models if p.split.terrain == place.terrain),
     )
     assert lead(alone) == alone.sentences_at(place)[0]
+
+
+def test_the_lead_says_where_the_best_model_cannot_be_distinguished(compared):
+    place = compared.places[0]
+    assert "cannot be distinguished" not in lead(compared)
+    widened = tuple(
+        replace(each, interval=replace(each.interval, low=-1.0, high=1.0))
+        if each.place == place
+        else each
+        for each in compared.differences
+    )
+    alike = replace(compared, differences=widened)
+    assert "In 1 of them another model cannot be distinguished" in lead(alike)
+
+
+def test_the_lead_names_no_model_that_was_not_identified(compared, monkeypatch):
+    """`icr_symmetric`, the best, held at assumed values on one terrain."""
+    summaries_at = type(compared).summaries_at
+
+    def assumed(self, place):
+        reasons = ("alpha is open",) if place == compared.places[0] else ()
+        return tuple(
+            replace(summary, not_identified=reasons if summary.model == "icr_symmetric" else ())
+            for summary in summaries_at(self, place)
+        )
+
+    monkeypatch.setattr(type(compared), "summaries_at", assumed)
+    words = lead(compared)
+    assert "differential_drive in 1" in words
+    assert "icr_symmetric in 1 of 2 comparisons" in words
 
 
 def test_the_lead_says_what_contradicts_it(compared):
@@ -127,7 +169,7 @@ def test_the_lead_says_what_contradicts_it(compared):
     )
     assert "icr_symmetric (J/N 900) has a larger error than differential_drive (" in lead(alone)
     both = replace(compared, fitness=fitness)
-    assert "At 2 of them medians or whole runs give another order" in lead(both)
+    assert "In 2 of them medians or whole runs give another order" in lead(both)
 
 
 def test_figures_of_an_earlier_comparison_go_and_other_files_stay(compared, tmp_path):

@@ -6,6 +6,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from odometry.digits import three_figures
 from odometry.effects.corrected import Added
 from odometry.effects.history import History
 from odometry.effects.in_course import in_course
@@ -92,7 +93,9 @@ def test_words_and_tables_are_those_of_the_result(page, scaled_result):
         for gap in (closing.before, closing.after, closing.noise_floor):
             assert with_interval(gap) in page.cells
     for rival in scaled_result.rivals:
-        assert {rival.name, f"{rival.evidence:.0f}", f"{rival.gap_after:.3g}"} <= set(page.cells)
+        assert {rival.name, f"{rival.evidence:.0f}", three_figures(rival.gap_after)} <= set(
+            page.cells
+        )
     for region in scaled_result.location.regions:
         assert region.words in page.cells
     assert {"0.790 to 0.820", "a free wheel", "traction_loss", "latency"} <= set(page.cells)
