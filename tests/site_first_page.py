@@ -72,12 +72,12 @@ def first_page() -> FirstPage:
 
 
 def beginning() -> str:
-    """README.md up to its first section, and the commands there; links to its files as names."""
+    """README.md up to its first section, and the commands there; links to its files as names in brackets."""
     text = README.read_text(encoding="utf-8")
     opening, _, rest = text.partition("\n## Two commands\n")
     commands = rest[: rest.index("```\n", rest.index("```bash") + 1) + 4]
     begun = opening.replace(PICTURE, Path(PICTURE).name) + commands
-    return re.sub(r"\[([^]]+)\]\(([\w/]+\.md)[^)]*\)", r"\1 in \2", begun)
+    return re.sub(r"\[([^]]+)\]\(([\w/]+\.md)[^)]*\)", r"\1 (\2)", begun)
 
 
 def page_of(module: str) -> str:
