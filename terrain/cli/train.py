@@ -17,7 +17,6 @@ from terrain.cli.options import (
 if TYPE_CHECKING:
     from terrain.classification.adaptation import Adaptation
     from terrain.classification.network_features import NetworkFeatures
-    from terrain.classification.patches import LabelledPatches
     from terrain.classification.training import Training
 
 
@@ -119,11 +118,10 @@ def train(
       terrain-odometry train my_photos --out terrain.model --scheduler tcp://host:8786
       terrain-odometry train new_camera --out new.model --adapt terrain.model
     """
-    from terrain.classification.manifest import read_manifest
     from terrain.classification.model_file import is_model
-    from terrain.classification.photo_faults import look_alikes
     from terrain.classification.training import train as train_classifier
     from terrain.cli.outputs import WHOLE, claim_file
+    from terrain.cli.train_notes import notes
     from terrain.cli.train_text import (
         claim_reliability_picture,
         summary,
@@ -151,41 +149,18 @@ def train(
             **shared,
         )
     else:
-        fixed = {"--preset": preset != "default", "--patch-size": patch_size is not None}
-        fixed |= {"--features": features is not None, "--k": k is not None}
-        fixed |= {"--scheduler": scheduler is not None}
-        training = adapted(patches, old, fixed, **shared)
+        unused = {
+            "--preset": preset != "default",
+            "--patch-size": patch_size is not None,
+            "--features": features is not None,
+            "--k": k is not None,
+            "--augment": augment,
+            "--scheduler": scheduler is not None,
+        }
+        training = adapted(patches, old, unused, **shared)
     classifier, loaded = training.classifier, training.patches
-    size = classifier.patch_size_px
-    for path in loaded.too_small:
-        click.echo(f"left out, smaller than {size} x {size} pixels: {path}", err=True)
-    photos, grouped = set(loaded.photos), _grouped(loaded)
-    if 0 < len(grouped) < len(photos):
-        click.echo(
-            f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
-            f"others is a group of its own, such as {min(photos - grouped)}",
-            err=True,
-        )
-    if alike := look_alikes(dict(zip(loaded.photos, loaded.groups, strict=True))):
-        one, other = alike[0]
-        click.echo(
-            f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
-            f"and {other}: copies, or frames of one scene. What is held out is no test then; give "
-            "photographs of one scene the same photo_id in manifest.csv",
-            err=True,
-        )
-    if colour and not classifier.colour_:
-        click.echo(
-            "Colour is left out: patches are grey, or most of a class are, or the preset is.",
-            err=True,
-        )
-    if (manifest := read_manifest(patches)) is not None and manifest.runs:
-        click.echo(
-            f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "
-            "places of the same recordings. The same terrain has another texture elsewhere: label "
-            "recordings of several sites, and test the model on one that is held out (classify)",
-            err=True,
-        )
+    for note in notes(training, patches, colour=colour):
+        click.echo(note, err=True)
     if features is not None:
         click.echo(
             f"Features: {features.described}. The model holds this part of the network.", err=True
@@ -198,29 +173,23 @@ def train(
     click.echo(f"\nWrote {out}. Next: terrain-odometry classify {shlex.quote(str(out))} IMAGE...")
 
 
-def _grouped(patches: "LabelledPatches") -> set[Path]:
-    """The photographs that a manifest names: the others are named after themselves."""
-    pairs = zip(patches.photos, patches.groups, strict=True)
-    return {photo for photo, group in pairs if group != str(photo)}
-
-
-def adapted(patches: Path, model: Path, fixed: dict[str, bool], **settings: Any) -> "Training":
+def adapted(patches: Path, model: Path, unused: dict[str, bool], **settings: Any) -> "Training":
     """Adapt a model and say what of old and new photographs was kept, and why.
 
     Parameters
     ----------
     patches, model : Path
-    fixed : dict of str to bool
-        Options that follow from the model, and whether they were given.
+    unused : dict of str to bool
+        Options that follow from the model or do nothing with it, and whether they were given.
     settings : Any
         Of `adapt`.
     """
     from terrain.classification.adaptation import adapt
     from terrain.classification.classifier import TerrainClassifier
 
-    given = [option for option, is_given in fixed.items() if is_given]
+    given = [option for option, is_given in unused.items() if is_given]
     if given:
-        raise click.UsageError(f"{given[0]} follows from the model of --adapt: leave it out")
+        raise click.UsageError(f"{given[0]} does nothing with --adapt: leave it out")
     found = adapt(patches, TerrainClassifier.load(model), **settings)
     click.echo(_words(found, model), err=True)
     return found.training

@@ -5,10 +5,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from terrain.classification.adaptation import ALONE, MIXED, OLD, adapt, clearly_best
+from terrain.classification import adaptation
+from terrain.classification.adaptation import ALONE, MIXED, OLD, _in_parts, adapt, clearly_best
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.model_file import read_model, write_model
 from terrain.classification.old_samples import SamplesBesideOld
+from terrain.classification.patches import LabelledPatches
+from terrain.classification.trained_on import TrainedOn
 from terrain.classification.validation import Samples
 from terrain.cli.train import train
 from terrain.errors import ModelFileError, PatchError
@@ -90,15 +93,53 @@ def adapted(classifier, camera):
     return adapt(camera(4, exchanged), classifier)
 
 
-def test_the_scores_decide_and_alone_is_the_answer_in_doubt(classifier, camera, adapted):
+def test_where_all_ways_are_equal_the_new_photographs_alone_are_kept(classifier, camera, adapted):
     for found in (adapt(camera(4, same), classifier), adapted):
-        assert set(found.scores) == {ALONE, MIXED, OLD}
-        assert found.scores[found.kept] >= found.scores[ALONE]
-        if found.kept == ALONE:
-            assert max(found.scores.values()) < found.scores[ALONE] + 0.1
-        assert found.forgotten == ()
-        kept = found.training.classifier
-        assert (kept is classifier) == (found.kept == OLD)
+        assert found.scores == {ALONE: 1.0, MIXED: 1.0, OLD: 1.0}
+        assert (found.kept, found.forgotten) == (ALONE, ())
+        made, patches = found.training.classifier, found.training.patches
+        assert made is not classifier
+        assert made.trained_on_ == patches.trained_on
+        assert len(made.old_samples_.labels) == len(patches.images)
+        assert (made.metres_per_pixel, made.patch_size_px) == (0.006, 32)
+
+
+def test_what_is_kept_is_what_is_given(classifier, camera, monkeypatch):
+    """The way that is clearly best, made to be each: its classifier, and what that learned."""
+    root, before = camera(2, same), TrainedOn(image_sums=frozenset({"before"}))
+    monkeypatch.setattr(classifier, "trained_on_", before)
+    for kept in (MIXED, OLD):
+        monkeypatch.setattr(adaptation, "clearly_best", lambda *_, kept=kept: kept)
+        found = adapt(root, classifier, rejected_share=0.11)
+        made, new = found.training.classifier, found.training.patches.trained_on
+        assert found.kept == kept
+        if kept == OLD:
+            assert made is classifier
+        else:
+            assert made.trained_on_ == new | before
+            assert made.rejected_share == 0.11
+
+
+def test_one_way_learns_from_the_new_photographs_alone_and_one_from_old_samples_too(
+    classifier, camera, monkeypatch
+):
+    given, fit = [], TerrainClassifier.fit
+
+    def recorded(self, *patches, beside=None, **settings):
+        given.append(beside)
+        return fit(self, *patches, beside=beside, **settings)
+
+    monkeypatch.setattr(TerrainClassifier, "fit", recorded)
+    adapt(camera(1, same), classifier)
+    assert [beside is classifier.old_samples_ for beside in given] == [False, True]
+    assert given[0] is None
+
+
+def test_halves_of_a_photograph_are_its_first_and_last_patches():
+    groups = ["a", "b", "a", "a", "b", "a", "a"]
+    patches = LabelledPatches(groups=groups)
+    halves = ["a, half 1", "b, half 1", "a, half 1", "a, half 1", "b, half 2"]
+    assert _in_parts(patches).groups == [*halves, "a, half 2", "a, half 2"]
 
 
 @pytest.mark.parametrize(("gains", "kept"), [((1, 1, 1, 1), MIXED), ((3, -2, 2, -2), ALONE)])
@@ -140,14 +181,19 @@ def test_with_one_photograph_of_a_terrain_the_new_ones_alone_are_learned_from(cl
     assert found.training.patches.groups[0].endswith(".png")
 
 
-def test_terrains_without_new_photographs_are_said_to_be_forgotten(training_patches, camera):
+def test_terrains_without_new_photographs_are_said_to_be_forgotten(
+    training_patches, camera, monkeypatch
+):
     images, labels, groups = training_patches
     sky = [np.full((32, 32), 200 + i, np.uint8) for i in range(8)]
     old = TerrainClassifier().fit(
         [*images, *sky], [*labels, *["sky"] * 8], [*groups, *map(str, range(8))]
     )
-    found = adapt(camera(3, exchanged), old)
-    assert found.forgotten == (() if found.kept == OLD else ("sky",))
+    root = camera(3, exchanged)
+    found = adapt(root, old)
+    assert (found.kept, found.forgotten) == (ALONE, ("sky",))
+    monkeypatch.setattr(adaptation, "clearly_best", lambda *_: OLD)
+    assert adapt(root, old).forgotten == ()  # the model as it is knows them
 
 
 def test_a_model_file_keeps_samples_and_older_ones_are_refused(classifier, camera, tmp_path):
@@ -173,12 +219,13 @@ def test_train_adapts_and_says_what_was_kept(model_file, camera, tmp_path):
     answer = CliRunner().invoke(train, [str(root), "--out", str(tmp_path / "new.model"), *options])
     assert answer.exit_code == 0, answer.output
     assert f"Adapted from {model_file}: balanced accuracy by patch" in answer.stderr
-    assert "Kept: " in answer.stderr
+    assert "Kept: the new photographs alone;" in answer.stderr
     loaded = TerrainClassifier.load(tmp_path / "new.model")
     assert (loaded.patch_size_px, loaded.metres_per_pixel) == (32, 0.006)
-    refused = CliRunner().invoke(train, [str(root), "--out", "x", *options, "--k", "3"])
-    assert refused.exit_code == 2
-    assert "--k follows from the model of --adapt" in refused.output
+    for unused in (["--k", "3"], ["--augment"], ["--preset", "fast"], ["--patch-size", "64"]):
+        refused = CliRunner().invoke(train, [str(root), "--out", "x", *options, *unused])
+        assert refused.exit_code == 2
+        assert f"{unused[0]} does nothing with --adapt" in refused.output
 
 
 def test_train_says_where_one_photograph_cannot_decide(model_file, camera, tmp_path):

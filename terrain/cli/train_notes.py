@@ -1,0 +1,58 @@
+"""What `train` says of the photographs before it writes the model."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from terrain.classification.manifest import read_manifest
+from terrain.classification.patches import LabelledPatches
+from terrain.classification.photo_faults import look_alikes
+from terrain.classification.training import Training
+
+
+def notes(training: Training, folder: Path, *, colour: bool) -> Iterator[str]:
+    """What was left out, what is no test of the model, and what is in it.
+
+    Parameters
+    ----------
+    training : Training
+    folder : Path
+        Of the photographs.
+    colour : bool
+        Whether colour was asked for.
+    """
+    classifier, patches = training.classifier, training.patches
+    size = classifier.patch_size_px
+    for path in patches.too_small:
+        yield f"left out, smaller than {size} x {size} pixels: {path}"
+    yield from _of_groups(patches)
+    if colour and not classifier.colour_:
+        yield "Colour is left out: patches are grey, or most of a class are, or the preset is."
+    if (manifest := read_manifest(folder)) is not None and manifest.runs:
+        yield (
+            f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "
+            "places of the same recordings. The same terrain has another texture elsewhere: label "
+            "recordings of several sites, and test the model on one that is held out (classify)"
+        )
+
+
+def _of_groups(patches: LabelledPatches) -> Iterator[str]:
+    """Where photographs that are held out may be of one scene with others."""
+    photos, grouped = set(patches.photos), _grouped(patches)
+    if 0 < len(grouped) < len(photos):
+        yield (
+            f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
+            f"others is a group of its own, such as {min(photos - grouped)}"
+        )
+    if alike := look_alikes(dict(zip(patches.photos, patches.groups, strict=True))):
+        one, other = alike[0]
+        yield (
+            f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
+            f"and {other}: copies, or frames of one scene. What is held out is no test then; give "
+            "photographs of one scene the same photo_id in manifest.csv"
+        )
+
+
+def _grouped(patches: LabelledPatches) -> set[Path]:
+    """The photographs that a manifest names: the others are named after themselves."""
+    pairs = zip(patches.photos, patches.groups, strict=True)
+    return {photo for photo, group in pairs if group != str(photo)}
