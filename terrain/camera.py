@@ -206,7 +206,7 @@ class Camera:
         raw = np.asarray(pixels, dtype=np.float64)
         normalised = _apply(np.asarray(np.linalg.inv(self.matrix)), raw.reshape(-1, 2))
         rays = undistort(normalised, self.distortion)
-        ground = _homogeneous(rays) @ np.linalg.inv(self.ground_to_ray).T
+        ground = np.column_stack([rays, np.ones(len(rays))]) @ np.linalg.inv(self.ground_to_ray).T
         weight = np.where(ground[:, 2] > 0, ground[:, 2], np.nan)
         return np.asarray(ground[:, :2] / weight[:, None]).reshape(raw.shape)
 
@@ -243,12 +243,6 @@ class Camera:
             self.matrix, self.distortion, np.eye(3), self.matrix, self.image_size, cv2.CV_16SC2
         )
         return maps
-
-
-def _homogeneous(points: FloatArray) -> FloatArray:
-    """Points (..., 2) as rows (x, y, 1)."""
-    flat = points.reshape(-1, 2)
-    return np.column_stack([flat, np.ones(len(flat))])
 
 
 def _apply(matrix: FloatArray, points: FloatArray) -> FloatArray:

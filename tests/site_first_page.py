@@ -72,7 +72,7 @@ def first_page() -> FirstPage:
 
 
 def beginning() -> str:
-    """README.md up to its first section, and the commands there; links to its files as names in brackets."""
+    """README.md up to its first section, and the commands there; files of links in brackets."""
     text = README.read_text(encoding="utf-8")
     opening, _, rest = text.partition("\n## Two commands\n")
     commands = rest[: rest.index("```\n", rest.index("```bash") + 1) + 4]

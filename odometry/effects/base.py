@@ -1,4 +1,5 @@
 """The interface of every effect that can be added to a kinematic model."""
+# ruff: noqa: ARG002, ARG003 - arguments of the interface
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -100,7 +101,7 @@ class Effect(ABC):
     physics: ClassVar[str] = ""
 
     @classmethod
-    def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":  # noqa: ARG003 - of the interface
+    def offered(cls, recorded: Recorded) -> "tuple[Effect, ...]":
         """Candidates of this form that measured runs may determine."""
         return (cls(),)
 
@@ -109,11 +110,11 @@ class Effect(ABC):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """Its parameters, in order."""
 
-    def lacks(self, inputs: Inputs, base: Base) -> str:  # noqa: ARG002 - of the interface
+    def lacks(self, inputs: Inputs, base: Base) -> str:
         """The data that a recording lacks to determine it, "" where it has them."""
         return ""
 
-    def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
+    def starts(self, inputs: Inputs, base: Base) -> FloatArray:
         """Values (S, P) from which a search begins."""
         return np.array([[parameter.start for parameter in self.parameters]])
 
@@ -121,24 +122,24 @@ class Effect(ABC):
         """Values (S, P) to which a search goes on from (P,) where they cost less."""
         return np.empty((0, len(values)))
 
-    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002 - of the interface
+    def usual(self, base: Base) -> tuple[FloatArray, FloatArray]:
         """Values (P,) that are usual, and how far others are from them; infinite: no matter."""
         count = len(self.parameters)
         return np.zeros(count), np.full(count, np.inf)
 
-    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:  # noqa: ARG002
+    def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """By how much values (P,) in steps may differ and do the same to what was recorded."""
         return np.zeros(len(values))
 
-    def same_as(self, values: FloatArray) -> Mapping[str, str]:  # noqa: ARG002 - of the interface
+    def same_as(self, values: FloatArray) -> Mapping[str, str]:
         """Effects that do exactly the same at these values, and what would distinguish them."""
         return {}
 
-    def is_meant(self, values: FloatArray) -> bool:  # noqa: ARG002 - of the interface
+    def is_meant(self, values: FloatArray) -> bool:
         """Whether values (P,) agree with the name, where a search may leave that."""
         return True
 
-    def in_words_at(self, values: FloatArray) -> str:  # noqa: ARG002 - of the interface
+    def in_words_at(self, values: FloatArray) -> str:
         """The name that a roboticist would use where its values are (P,)."""
         return self.in_words
 
@@ -215,10 +216,7 @@ class MeasurementEffect(Effect):
     by_pose: ClassVar[bool] = True
 
     def delay_s(
-        self,
-        values: FloatArray,  # noqa: ARG002 - of the interface
-        stamps_s: FloatArray,
-        run: int | None = None,  # noqa: ARG002
+        self, values: FloatArray, stamps_s: FloatArray, run: int | None = None
     ) -> FloatArray:
         """By how much each of the stamps of poses (M,), in run time, is late (M,).
 
@@ -226,12 +224,7 @@ class MeasurementEffect(Effect):
         """
         return np.zeros_like(stamps_s)
 
-    def seen(
-        self,
-        values: FloatArray,  # noqa: ARG002 - of the interface
-        poses: FloatArray,
-        reported: Reported,  # noqa: ARG002
-    ) -> FloatArray:
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
         """Poses (M, 3) as the sensor reports them, of those of the robot.
 
         `reported` is what it did report: `poses` may be those of a drive that began at the
@@ -240,14 +233,11 @@ class MeasurementEffect(Effect):
         return poses
 
     def gyroscope(
-        self,
-        values: FloatArray,  # noqa: ARG002 - of the interface
-        yaw_rate_rad_s: FloatArray,
-        inputs: Inputs,  # noqa: ARG002
+        self, values: FloatArray, yaw_rate_rad_s: FloatArray, inputs: Inputs
     ) -> FloatArray:
         """What the gyroscope reports (N,) of the yaw rate (N,) of the robot."""
         return yaw_rate_rad_s
 
-    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:  # noqa: ARG002
+    def robot_poses(self, values: FloatArray, reported: Reported) -> FloatArray:
         """The inverse of `seen`: poses (M, 3) of the robot."""
         return reported.poses

@@ -17,6 +17,8 @@ SLIP_BY_FORCE = (
     "turns in time"
 )
 
+BY_STEPS = "commands that change in steps: a delay moves the answer, a lag rounds it"
+
 
 class ActuatorLag(CommandEffect):
     """A first-order lag between recorded speeds and those of the treads."""
@@ -30,7 +32,7 @@ class ActuatorLag(CommandEffect):
     remedy = "record measured wheel speeds, or keep the lag in the model"
     alike: ClassVar[Mapping[str, str]] = {
         "time_offset": BY_GYROSCOPE,
-        "command_delay": "commands that change in steps: a delay moves the answer, a lag rounds it",
+        "command_delay": BY_STEPS,
     }
 
     @property
@@ -79,7 +81,7 @@ class CommandDelay(CommandEffect):
     remedy = "record measured wheel speeds, or move the stamps of the commands by the delay"
     alike: ClassVar[Mapping[str, str]] = {
         "time_offset": BY_GYROSCOPE,
-        "actuator_lag": "commands that change in steps: a delay moves the answer, a lag rounds it",
+        "actuator_lag": BY_STEPS,
     }
 
     @property

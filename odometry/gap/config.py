@@ -3,26 +3,24 @@
 from dataclasses import dataclass
 
 from odometry.config import require, require_positive
+from odometry.gap.smooth_config import SmoothConfig
 
 POSITIVE = (
     *("horizon_s", "part_s", "least_evidence", "least_excess", "near_bound", "sure", "surely"),
     *("far_off", "equivalent_margin", "general_margin", "unexplained", "left_over"),
-    *("contact_spread", "turns_above", "turns_times", "hardly", "least_spacing_m", "uneven"),
+    *("contact_spread", "turns_above", "turns_times", "hardly", "uneven"),
 )
 SHARES = (
     *("least_share", "least_rest", "first_share", "mostly_closed", "bursts_closed", "least_floor"),
-    *("events_told", "least_held_out", "least_of_rest", "least_of_all", "most_without"),
+    *("events_predicted", "least_held_out", "least_of_rest", "least_of_all", "most_without"),
     *("most_beaten", "least_better", "least_beside", "main_part", "one_sided", "no_farther"),
-    *("much_farther", "largest_growth", "beyond_first_order", "base_probability"),
+    *("much_farther", "largest_growth", "base_probability"),
     *("least_odds", "sure_odds"),
 )
 FEWEST = {
     "folds": 2,
     "held_back": 2,
-    "knots": 2,
     "most_poses": 2,
-    "even_knots": 2,
-    "tread_knots": 1,
     "trimmed": 1,
     "most_effects": 1,
     "most_windows": 20,
@@ -30,8 +28,8 @@ FEWEST = {
 
 
 @dataclass(frozen=True)
-class GapConfig:
-    """How a gap is measured, and when an effect is named.
+class GapConfig(SmoothConfig):
+    """How a gap is measured, and when an effect is named; smooth functions by `SmoothConfig`.
 
     Attributes
     ----------
@@ -128,7 +126,7 @@ class GapConfig:
         Share of what a name closes that it may close without its essential parameters.
     most_beaten : float
         Share of what a name closes by which a candidate that is refused may close more.
-    events_told : float
+    events_predicted : float
         Area under the curve (ROC) with which a recorded variable may say when events are. True
         bursts have 0.72 at most, a drive that is limited on one side 0.97.
     by_place : float
@@ -149,33 +147,15 @@ class GapConfig:
         Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
     gyro_bias_drift_rad_s : float
         By how much the bias of a gyroscope differs from one recording to another.
-    promising, promising_in_place : int
-        Smooth functions that are fitted in full where one is asked for: in full, those that leave
-        least to first order seldom change their order. In the place of a name more are: what is
-        large is far from its first order, and the fourth was the true one.
-    beyond_first_order : float
-        Share of what a name closes by which a smooth function may leave more to first order, and
-        is fitted in its place all the same: the true one left 0.18 more, and 0.16 less in full.
     beside : int
         Names that are tested beside a smooth function: those of most evidence without it.
-    least_range : float
-        Range of a variable, in its unit, below which it explains nothing: less is rounding.
     least_odds, sure_odds : float
         Odds at which a drive is proposed, and those at which no better drive is looked for.
     least_tilt_rad : float
         Steepest terrain measured, below which no drive on a slope is proposed: nobody could
         find it.
-    knots, tread_knots, even_knots : int
-        Of a smooth function; of that of a tread's own motion, to each side of zero; and of one
-        whose knots are even in its variable.
-    nodes : tuple of int
-        Of maps of what follows the place, at most; one grid of each number.
-    least_spacing_m : float
-        Between nodes: positions of a reference are off by some centimetres.
-    least_revisited : float
-        Share of the samples at places to which the robot comes back, which a map needs.
-    most_effects, most_smooth : int
-        Names, and smooth functions where no name is accepted.
+    most_effects : int
+        Names at most.
     outlier_sigmas : float
         Standard deviations by which a single pose must be off its neighbours to be an outlier.
     least_outliers : int
@@ -234,7 +214,7 @@ class GapConfig:
     least_of_all: float = 0.7
     most_without: float = 0.8
     most_beaten: float = 0.1
-    events_told: float = 0.85
+    events_predicted: float = 0.85
     by_place: float = 0.02
     event_nodes: tuple[int, ...] = (40, 80, 160)
     uneven: float = 0.3
@@ -244,22 +224,11 @@ class GapConfig:
     contact_spread: float = 1.1
     gyro_least_of_yaw: float = 1.0
     gyro_bias_drift_rad_s: float = 0.01
-    promising: int = 2
-    promising_in_place: int = 4
-    beyond_first_order: float = 0.25
     beside: int = 3
-    least_range: float = 1e-3
     least_odds: float = 0.6
     sure_odds: float = 0.98
     least_tilt_rad: float = 0.03
-    knots: int = 5
-    tread_knots: int = 4
-    even_knots: int = 9
-    nodes: tuple[int, ...] = (16, 40)
-    least_spacing_m: float = 0.3
-    least_revisited: float = 0.25
     most_effects: int = 3
-    most_smooth: int = 4
     outlier_sigmas: float = 8.0
     least_outliers: int = 4
     most_jumping: float = 0.1
@@ -269,11 +238,11 @@ class GapConfig:
     most_poses: int = 40
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         require_positive(self, *POSITIVE)
         for name in SHARES:
             value = getattr(self, name)
             require(0 <= value < 1, f"{name} = {value}, expected 0 to 1")
-        require(min(self.nodes) >= 2, f"nodes = {self.nodes}, expected 2 or more each")
         for name, least in FEWEST.items():
             count = getattr(self, name)
             require(count >= least, f"{name} = {count}, expected {least} or more")

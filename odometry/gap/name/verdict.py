@@ -168,7 +168,7 @@ def leaves_noise(spread: float, closed: float, left_over: float, most: float) ->
 
 def come_by_themselves(variable: str, area: float, config: GapConfig) -> str:
     """Whether no recorded variable predicts when events are."""
-    if area <= config.events_told:
+    if area <= config.events_predicted:
         return ""
     return (
         f"{noun_of(variable)} predicts when its events are (in {100 * area:.0f} % of pairs of a "
