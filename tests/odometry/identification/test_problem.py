@@ -1,11 +1,13 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from odometry.identification.problem import Problem
+from odometry.errors import IdentificationError
+from odometry.identification.problem import Problem, StretchProblem
 from odometry.identification.solve import solve
-from odometry.identification.start import SolverConfig
+from odometry.identification.start import SolverConfig, start_of
 from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
 from odometry.run import Run
@@ -125,3 +127,25 @@ def test_points_are_remembered_by_their_values_and_forgotten(problem):
     with pytest.raises(ValueError, match="read-only"):
         fresh.linearised(near)[1][:] = 0.0
     assert np.abs(fresh.linearised(far)[0] - first).max() > 0.01
+
+
+@pytest.mark.parametrize(("turns_rad", "numbers"), [(None, 7), (np.zeros((1, 4)), 11)])
+def test_the_direction_of_a_stretch_takes_one_of_its_numbers(problem, turns_rad, numbers):
+    """Four steps of two positions, or of two and a turn."""
+    stretches = SimpleNamespace(steps=4, turns_rad=turns_rad)
+    of = StretchProblem(problem.model, stretches, problem.values, FREE, problem.variances)
+    assert of.numbers_per_window == numbers
+
+
+def test_as_many_numbers_as_parameters_are_too_few(winding):
+    start = start_of(
+        Icr(),
+        winding.robot,
+        fixed={"alpha_left": 1.0},
+        released=frozenset(),
+        near=None,
+        solver_config=SolverConfig(),
+    )
+    start.require_numbers(5, "stretches", 1)
+    with pytest.raises(IdentificationError, match="4 stretches do not determine 4 parameters"):
+        start.require_numbers(4, "stretches", 1)

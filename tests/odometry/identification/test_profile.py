@@ -95,6 +95,18 @@ def test_where_the_loss_is_quadratic_the_interval_is_students(winding, synthetic
         assert ends == pytest.approx((of.low, of.high), abs=0.02 * width)
 
 
+def test_the_interval_of_a_parameter_that_alone_is_free_is_students(winding, synthetic, stated):
+    run = synthetic.noisy(winding, np.random.default_rng(1))
+    (free,) = identify([run], MODEL, window_config=stated, solver_config=CONFIG).terrains.values()
+    held = {"alpha": free.fit.values["alpha"]}
+    found = identify([run], MODEL, window_config=stated, solver_config=CONFIG, fixed=held)
+    (plain,) = found.terrains.values()
+    (profiled,) = with_profiles(found, CONFIG).terrains.values()
+    of, ends = plain.fit.intervals["b_hat"], profiled.fit.intervals["b_hat"]
+    width = of.high - of.low
+    assert (ends.low, ends.high) == pytest.approx((of.low, of.high), abs=0.03 * width)
+
+
 def test_a_model_fitted_in_stages_has_no_profile(curved):
     (name, ground), *_ = curved.terrains.items()
     staged = replace(ground, fit=replace(ground.fit, model=_Staged()))
