@@ -7,7 +7,7 @@ import pytest
 
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
-from odometry.identification.two_kinds import LEAST_WINDOWS
+from odometry.identification.two_kinds import LEAST_WINDOWS, two_kinds
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
 
@@ -76,3 +76,13 @@ def test_few_windows_are_not_divided(recorded):
     found = found_in(replace(short, odometry=short.odometry.rows(rows)))
     assert len(found.fit.windows) < LEAST_WINDOWS
     assert found.kinds is None
+
+
+def test_nothing_is_fitted_to_few_windows(recorded):
+    whole = found_in(alternating(recorded, 1.4)).fit
+    few = whole.windows.where(np.arange(len(whole.windows)) < LEAST_WINDOWS - 1)
+
+    def fit_to(*_):
+        pytest.fail("a part was fitted")
+
+    assert two_kinds(few, fit_to, whole) is None
