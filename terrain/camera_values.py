@@ -14,7 +14,7 @@ from terrain.image_size import PIXELS
 LARGEST = 1e9  # of a value in pixels, metres or radians
 SHORTEST_FOCUS_PX = 1e-3  # also where matrix is that of an image of one unit
 
-# The optical frame (x right, y down, z along the view) from the camera's own (x, y left, z up)
+# The optical frame (x right, y down, z viewing direction) from the camera's own (x, y left, z up)
 _OPTICAL_FROM_CAMERA = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 
 

@@ -33,7 +33,7 @@ class PoseFault:
     Attributes
     ----------
     note : str
-        What is seen, its cause, and what to do.
+        What is wrong, its cause, and what to do.
     counts : bool
         Whether its errors still mean something.
     """

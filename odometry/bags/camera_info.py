@@ -22,7 +22,7 @@ def camera_table(
     info : CameraInfo
         Of either version of ROS.
     robot_from_optical : (4, 4) or None
-        Pose of the optical frame (x right, y down, z along the view) in the robot frame.
+        Pose of the optical frame (x right, y down, z viewing direction) in the robot frame.
     rectified : bool
         Whether the images are rectified: then P is their matrix, and they have no distortion.
     """

@@ -104,7 +104,7 @@ def _camera(plan: Plan, survey: Survey, notes: list[str]) -> dict[str, Any]:
     elif not looks_along_z(pose):
         notes.append(
             f"{plan.images}: its frame {frame} has z upwards, as no optical frame has: its x axis "
-            "is taken as the view"
+            "is taken as the viewing direction"
         )
         pose = pose @ se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA.T)
     rectified = bool(RECTIFIED.search(plan.images))

@@ -174,7 +174,7 @@ def _joint_values(
 
 
 def _are_ticks(topic: Topic, names: tuple[str, ...]) -> bool:
-    """Whether all places that were seen are whole numbers, and moved by many."""
+    """Whether all places that were read are whole numbers, and moved by many."""
     ends = [topic.ranges[PLACE, name] for name in names if (PLACE, name) in topic.ranges]
     whole = all(end.is_integer() for pair in ends for end in pair)
     return whole and any(most - least >= LEAST_TICKS for least, most in ends)

@@ -1,7 +1,7 @@
 """The change of the contact force balance by one more force: for slope sliding and inertia.
 
 Not the balance itself is the effect but the change that gravity along the slope, or inertia,
-makes to it: on level ground and slow the base stays as it was calibrated. Both change
+makes to it: on level terrain and slow the base stays as it was calibrated. Both change
 slowly, so that they are computed on means over a fifth of a second, of the recorded
 speeds before any slip: then they do not depend on what else is fitted, and are remembered.
 """

@@ -1,4 +1,4 @@
-"""Sliding downhill and inertia by the forces of ground contacts."""
+"""Sliding downhill and inertia by the forces of contacts with the terrain."""
 
 import numpy as np
 from scipy.linalg.lapack import dtbtrs

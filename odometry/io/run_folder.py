@@ -165,7 +165,7 @@ def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
         return ""
     return (
         f"the body moves most along its {'xyz'[strongest]} axis; expected x "
-        "forward. Poses of a camera (z along the view, y down) need --axes optical"
+        "forward. Poses of a camera (z along the viewing direction, y down) need --axes optical"
     )
 
 

@@ -15,7 +15,10 @@ from odometry.io.kitti import read_kitti, write_kitti
 from odometry.io.tum import read_spatial_tum, write_spatial_tum
 from odometry.trajectory import SpatialTrajectory
 
-ROBOT, OPTICAL = "robot", "optical"  # x forward, z up; or x right, y down, z along the view
+ROBOT, OPTICAL = (
+    "robot",
+    "optical",
+)  # x forward, z up; or x right, y down, z along the viewing direction
 AXES = (ROBOT, OPTICAL)
 
 

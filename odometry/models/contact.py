@@ -1,4 +1,4 @@
-"""Quasi-static force balance of the ground contacts under both treads.
+"""Quasi-static force balance of the contacts under both treads.
 
 None of the papers has it. Its parts are known: pressure on single points (Martinez 2017,
 section II), centrifugal force (Martinez 2017 eq. 10), Coulomb friction against the sliding of each

@@ -34,13 +34,13 @@ class Column(IntEnum):
 
 
 class IcrSlope(KinematicModel):
-    """ICRs of level ground, shifted while turning on a slope.
+    """ICRs of level terrain, shifted while turning on a slope.
 
     The shift is proportional to what the forward speed leaves of `v_max`, and zero above it.
     lambda_1 moves both tread ICRs with the pitch and x_icr with the roll; lambda_2 moves one
     tread ICR further out where the slope rises mainly ahead or behind. The ICRs stay outside
-    the base rectangle sideways and within it lengthwise (limits I-III); ICRs of level ground
-    that break these limits are held at its edge on level ground, too.
+    the base rectangle sideways and within it lengthwise (limits I-III); ICRs of level terrain
+    that break these limits are held at its edge on level terrain, too.
 
     The twist is continuous. Its derivatives jump where the effective tread speeds are equal or
     opposite, where the forward speed is `v_max`, and where a limit sets in.
@@ -62,7 +62,7 @@ class IcrSlope(KinematicModel):
     )
 
     def check(self, values: FloatArray) -> None:
-        """y_left must exceed y_right on level ground."""
+        """y_left must exceed y_right on level terrain."""
         Icr().check(values)
 
     def icrs(self, values: FloatArray, inputs: Inputs) -> FloatArray:

@@ -62,7 +62,7 @@ class Turn:
 class InertiaModel(KinematicModel):
     """Tread ICRs by indices of the force of inertia; a subclass computes that force.
 
-    The force is held at the robot's weight, more than which no ordinary ground can take up. H
+    The force is held at the robot's weight, more than which no ordinary terrain can take up. H
     acts through the sign of V_l + H V_r alone: where that changes, the twist jumps, unless
     there is no force; the derivative by H is zero. The other derivatives jump where V_l = V_r,
     where eta is held at its least value and where the force is held at the weight.

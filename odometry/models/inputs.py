@@ -75,7 +75,7 @@ class Inputs:
 
     @cached_property
     def tilt(self) -> Tilt | None:
-        """Of every sample; None on level ground."""
+        """Of every sample; None on level terrain."""
         if not (np.any(self.roll_rad) or np.any(self.pitch_rad)):
             return None
         return tilt_of(self.roll_rad, self.pitch_rad)

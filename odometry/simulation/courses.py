@@ -77,7 +77,7 @@ def manoeuvre(
 
 
 def effective_width_m(vehicle: ContactVehicle) -> float:
-    """Difference of tread speeds by yaw rate in a slow wide turn on level ground [m]."""
+    """Difference of tread speeds by yaw rate in a slow wide turn on level terrain [m]."""
     twists, _ = steady_state(vehicle, np.array([WIDE_TURN_M_S]))
     return float((WIDE_TURN_M_S[1] - WIDE_TURN_M_S[0]) / twists[0, 2])
 
@@ -117,7 +117,7 @@ def make_course(
     name : str
         One of COURSE_NAMES.
     vehicle : ContactVehicle
-        Its turning on level ground decides how long turns take.
+        Its turning on level terrain decides how long turns take.
     duration_s, max_speed_m_s : float
         About how long, and the largest tread speed.
     slope_rad, uphill_rad : float
@@ -219,7 +219,7 @@ def slope_paths(vehicle: ContactVehicle) -> dict[str, Course]:
 
 
 def turn_rate(vehicle: ContactVehicle, speed_m_s: float, difference_m_s: float) -> float:
-    """Yaw rate [rad/s] of the steady left turn on level ground."""
+    """Yaw rate [rad/s] of the steady left turn on level terrain."""
     half = difference_m_s / 2
     twists, _ = steady_state(vehicle, np.array([[speed_m_s - half, speed_m_s + half]]))
     return float(twists[0, 2])

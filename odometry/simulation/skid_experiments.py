@@ -68,7 +68,7 @@ def wheel_experiment(
 def calibration_courses(
     vehicle: ContactVehicle, max_speed_m_s: float, duration_s: float = 60.0
 ) -> tuple[Course, ...]:
-    """Skidpad, clothoid and sinusoid on level ground (Salvi 2024, section III)."""
+    """Skidpad, clothoid and sinusoid on level terrain (Salvi 2024, section III)."""
     return tuple(
         make_course(
             name,

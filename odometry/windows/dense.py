@@ -123,7 +123,7 @@ class DenseWindows:
 
 
 def motion_from_first(poses: FloatArray, windows: IntArray) -> FloatArray:
-    """Motion (K, n, 3) of poses (M, 3) seen from the first of each window (K, n + 1).
+    """Motion (K, n, 3) of poses (M, 3) relative to the first of each window (K, n + 1).
 
     Yaw is not wrapped.
     """

@@ -32,7 +32,7 @@ class Moving(Protocol):
 def window_motion(model: Moving, values: FloatArray, windows: Windows) -> FloatArray:
     """Predicted pose (K, 3) at the end of each window in the level frame of its start.
 
-    Every step is the exact arc of the twist in force, seen in the level frame (Martinez 2024
+    Every step is the exact arc of the twist in force, in the level frame (Martinez 2024
     eq. 12 with REP-103's rotation); yaw is not wrapped.
     """
     twists = model.twist(values, windows.inputs)

@@ -175,7 +175,7 @@ def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windo
 
 
 def _motion(poses: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
-    """Poses (K, 3) of the ends seen from the starts, with whole turns."""
+    """Poses (K, 3) of the ends relative to the starts, with whole turns."""
     motion = se2.between(poses[first], poses[last])
     motion[:, 2] = poses[last, 2] - poses[first, 2]
     return np.asarray(motion)

@@ -45,7 +45,7 @@ def mount_in(
     ----------
     transforms : Mapping of (parent, child) to (4, 4)
     camera : str
-        A frame with x right, y down, z along the view.
+        A frame with x right, y down, z along the viewing direction.
     robot : str
         A frame with x forward, y left, z up, its origin on the terrain.
 

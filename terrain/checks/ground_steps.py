@@ -60,7 +60,7 @@ class GroundSteps:
 
     @property
     def is_steady(self) -> bool:
-        """Whether the camera does not rock, and looks as it is said to."""
+        """Whether the camera does not rock, and points as [camera] says."""
         return max(abs(of) for of in self.scale) < STEADY
 
 

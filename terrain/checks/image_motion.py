@@ -31,7 +31,7 @@ MIRRORED = -0.5  # of a turn by images over that of the robot
 
 
 def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
-    """Images that are late, early, reversed or mirrored, and a camera that looks elsewhere.
+    """Images that are late, early, reversed or mirrored, and a camera that points elsewhere.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def _aside(aside_deg: float) -> Finding:
         "camera_yaw",
         Level.WARNING,
         f"the terrain comes towards the camera {degrees:.0f} degrees beside straight ahead",
-        f"The camera looks {degrees:.0f} degrees farther to the {side} than [camera] says"
+        f"The camera points {degrees:.0f} degrees farther to the {side} than [camera] says"
         + (", or the images are in the reverse order" if backwards else ""),
         "Find the mount with camera --from-motion, or correct its yaw",
     )

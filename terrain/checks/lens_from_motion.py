@@ -100,7 +100,7 @@ def _tried(motion: ImageMotion, camera: Camera) -> Iterator[Fitted]:
     fit = _Fit(motion, camera)
     loss, mounted = fit.solved(camera, [HEIGHT, PITCH, YAW])
     degrees, stated = (float(np.degrees(of[4])) for of in (_mount(mounted), camera.mount))
-    words = f"The camera looks {degrees:.1f} degrees down, not {stated:.1f} as its pitch says"
+    words = f"The camera points {degrees:.1f} degrees down, not {stated:.1f} as its pitch says"
     yield Fitted(mounted, loss, words + _height(mounted, camera), is_pitch=True)
     for by, what in ((np.array([1.0, 1.0]), "The"), (np.array([0.0, 1.0]), "The vertical")):
         factor, loss, changed = fit.of_focal_lengths(by)

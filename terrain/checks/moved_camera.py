@@ -70,4 +70,4 @@ def _looks(motion: ImageMotion, camera: Camera, places: BoolArray, when: str) ->
     if fitted is None or camera.mount is None:
         return ""
     stated = np.degrees(camera.mount[4])
-    return f": {when} it looks {np.degrees(fitted):.1f} degrees down, not {stated:.1f}"
+    return f": {when} it points {np.degrees(fitted):.1f} degrees down, not {stated:.1f}"

@@ -15,7 +15,7 @@ WHOLE_TURN_RAD = 2 * np.pi  # larger angles in radians are not expected
 UP_RAD = 0.09  # 5 degrees, a camera for the terrain does not point higher
 LARGE_RAD = 3.2  # above half a turn, which is not needed in radians; 2 and 3 degrees are seldom
 TILTED_RAD = 0.35  # 20 degrees, a camera is not rolled by more
-# Columns: the camera's x, y, z axes in its optical frame (x right, y down, z along the view)
+# Columns: the camera's x, y, z axes in its optical frame (x right, y down, z viewing direction)
 _CAMERA_IN_OPTICAL = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])
 
 
@@ -105,8 +105,8 @@ def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
             np.array([roll, -pitch, yaw]),
         )
     yield (
-        "the angles are those of the optical frame (x right, y down, z along the view)",
-        "Give the angles of a frame with x along the view, y left, z up",
+        "the angles are those of the optical frame (x right, y down, z viewing direction)",
+        "Give the angles of a frame with x in the viewing direction, y left, z up",
         _of_optical(mount[3:]),
     )
     for degrees, words in ((-90, "90"), (90, "-90"), (180, "180")):

@@ -33,7 +33,7 @@ class Classification:
     patches : int
         That the image was cut into.
     reason : str
-        Why the label is ``unknown``: the image shows no ground, or the name is doubtful or
+        Why the label is ``unknown``: the image shows no terrain, or the name is doubtful or
         improbable; else "".
     probability_right : float or None
         That the likeliest terrain is the right one, learned from images held out; `confidence` is

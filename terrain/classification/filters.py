@@ -1,7 +1,7 @@
 """Filtered copies of a grey patch: SFTA describes each as a texture.
 
 Every filter takes the `Scales` of a grey patch, or its RGB image, and returns an 8-bit image.
-Gains are fixed where they keep the contrast of the ground, and relative to the patch
+Gains are fixed where they keep the contrast of the terrain, and relative to the patch
 where it is not.
 """
 

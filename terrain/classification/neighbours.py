@@ -96,10 +96,10 @@ class DiscriminantNeighbours:
     class among the discriminants, the number of classes that the neighbours' vote leaves open, and
     the cube of the local sparsity among whitened principal components. The first two measure
     whether a patch is similar to any class in what distinguishes classes, the third whether its
-    neighbours agree, the last whether it looks like anything seen. Patches of one image are judged
-    together by their mean place, see `labels_and_image_distances`. The mean and the vote detect
-    another terrain, the samples what is far from all (sky, blur). Altered copies vote, but only
-    what was really seen makes a patch familiar.
+    neighbours agree, the last whether any training patch is like it. Patches of one image are
+    judged together by their mean place, see `labels_and_image_distances`. The mean and the vote
+    detect another terrain, the samples what is far from all (sky, blur). Altered copies vote, but
+    only what was really photographed makes a patch familiar.
 
     Models of files before version 0.12 have no `class_means_`: their distance is the mean distance
     to the nearest samples among the discriminants, times the local sparsity.

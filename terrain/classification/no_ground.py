@@ -1,4 +1,4 @@
-"""Images that show no ground: sky, white, black, noise, and what is smoother than the terrain."""
+"""Images that show no terrain: sky, white, black, noise, and what is smoother than the terrain."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ LEAST_MARGIN = 0.35  # in logarithms of variance: a fifth in texture
 SMOOTH_SHARE, BLUE_SHARE = 0.1, 0.95
 BLUER = 0.02
 
-NO_GROUND = "no ground: "  # begins every reason
+NO_GROUND = "no terrain: "  # begins every reason
 OVEREXPOSED, DARK, NOISE, SKY, SMOOTH = (
     NO_GROUND + reason
     for reason in (
@@ -133,14 +133,14 @@ class ShownGround:
         return cls(*(np.array(column) for column in zip(*rows, strict=True)))
 
     def lacks(self, patches: Sequence[ByteImage], code: int) -> str:
-        """Why most patches of an image named a terrain show no ground; "" where it may be of it."""
+        """Why most patches of an image with a name show no terrain; "" where it may be of it."""
         reasons = [self.lacks_in(Showing.of(patch), code) for patch in patches]
         if 2 * reasons.count("") >= len(reasons):
             return ""
         return Counter(reason for reason in reasons if reason).most_common(1)[0][0]
 
     def lacks_in(self, shown: Showing, code: int) -> str:
-        """Why a patch named a terrain shows no ground; "" where it may be of it."""
+        """Why a patch with a name shows no terrain; "" where it may be of it."""
         octaves = shown.texture
         if shown.white > self.most_white[code]:
             return OVEREXPOSED
@@ -189,7 +189,7 @@ def _limits(texture: FloatArray, others: FloatArray) -> tuple[AnyArray | float, 
 
 
 def no_ground_note(reasons: Sequence[str]) -> str | None:
-    """How many of the images show no ground, and why; None where all may.
+    """How many of the images show no terrain, and why; None where all may.
 
     `reasons` are those of each image for its label, "" where there is none.
     """
@@ -199,5 +199,5 @@ def no_ground_note(reasons: Sequence[str]) -> str | None:
         return None
     words = ", ".join(f"{reason} ({count})" for reason, count in counts.items())
     return (
-        f"{sum(counts.values())} of {len(reasons)} images show no ground and are unknown: {words}"
+        f"{sum(counts.values())} of {len(reasons)} images show no terrain and are unknown: {words}"
     )

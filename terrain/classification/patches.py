@@ -1,4 +1,4 @@
-"""Labelled photographs of ground: find them, group them, cut them to patches of one size."""
+"""Labelled photographs of terrain: find them, group them, cut them to patches of one size."""
 
 from collections import Counter
 from collections.abc import Sequence

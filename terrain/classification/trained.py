@@ -57,7 +57,7 @@ class TrainedClassifier(ModelFile):
     def is_unknown(self, X: Sequence[ByteImage] | AnyArray) -> BoolArray:
         """Whether each row of features (n,) lies beyond the rejection distance.
 
-        Of images whether `classify` says so: also where they show no ground.
+        Of images whether `classify` says so: also where they show no terrain.
         """
         if holds_images(X):
             check_is_fitted(self)
@@ -70,7 +70,7 @@ class TrainedClassifier(ModelFile):
         A larger image is cut into patches side by side; their probabilities are averaged, and
         their distance together, on the scale of one patch, decides whether it is unknown: that of
         their mean place among the discriminants, or with ``chen2023`` and models of files before
-        version 0.13 the median of their distances. It is unknown as well where it shows no ground,
+        version 0.13 the median of their distances. It is unknown as well where it shows no terrain,
         or things, or where the name is improbable, see `Classification.reason`; ``chen2023``,
         models of features and of files before version 0.14 do not check that, and those before
         0.16 not whether it shows things, nor whether the name is improbable.
@@ -86,7 +86,7 @@ class TrainedClassifier(ModelFile):
         ]
 
     def checked(self, image: ByteImage, answer: Classification) -> Classification:
-        """The answer for an image with its confidence, `unknown` if improbable or no ground."""
+        """The answer for an image with its confidence, `unknown` if improbable or no terrain."""
         answer = self._calibrated(image, answer)
         if self.shown_ground_ is None:
             return answer

@@ -115,7 +115,7 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         return [
             f"vision named one terrain for both treads in none of {len(image_labels)} images: "
             f"{words}; {nothing}. With --per-tread an image counts where both treads have the same "
-            "label (columns left and right of terrain.csv); without it the ground ahead is "
+            "label (columns left and right of terrain.csv); without it the terrain ahead is "
             "classified as one"
         ]
     return [

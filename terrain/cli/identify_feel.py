@@ -86,7 +86,9 @@ def _print(model: "FeelModel") -> None:
     print_table([("true terrain", *model.names), *lines])
     click.echo("What each group of features brings (windows):")
     groups = report["window_by_groups"]
-    print_table([("features", "right"), *((name, f"{of:.3f}") for name, of in groups.items())])
+    print_table(
+        [("features", "balanced accuracy"), *((name, f"{of:.3f}") for name, of in groups.items())]
+    )
     for note in report["notes"]:
         click.echo(f"Note: {note}", err=True)
     click.echo(f"Columns that `feel` needs: {', '.join(model.design.columns)}")

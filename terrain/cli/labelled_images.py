@@ -162,7 +162,7 @@ def print_likeness(likeness: "Likeness | None") -> None:
 
 
 def print_no_ground(reasons: Sequence[str]) -> None:
-    """Say how many images show no ground, by the reasons of all, if any does not."""
+    """Say how many images show no terrain, by the reasons of all, if any does not."""
     from terrain.classification.no_ground import no_ground_note
 
     note = no_ground_note(reasons)

@@ -95,8 +95,8 @@ def trajectory_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--axes",
         type=click.Choice(["robot", "optical"]),
-        help="Of these files: x forward and z up, or those of images, z along the view and y "
-        "down.  [default: optical of KITTI, else robot]",
+        help="Of these files: x forward and z up, or those of images, z the viewing direction "
+        "and y down.  [default: optical of KITTI, else robot]",
     )
     @wraps(command)
     def with_form(*, times: Path | None, axes: str | None, **others: Any) -> None:

@@ -104,7 +104,7 @@ def photos_from_folder(folder: Path, rng: np.random.Generator) -> PhotoSets:
         if len(groups) < 2:
             raise SynthesisError(
                 f"{folder / label}: {len(groups)} photo; at least 2 with different photo_id "
-                "are needed, one for the ground and one for the patches"
+                "are needed, one for the terrain and one for the patches"
             )
         chosen = [groups[i][0] for i in rng.permutation(len(groups))]
         half = len(chosen) // 2

@@ -92,7 +92,7 @@ class View:
         Raises
         ------
         SynthesisError
-            If no pixel shows the ground.
+            If no pixel shows the terrain.
         """
         width, height = camera.image_size
         columns, rows = np.meshgrid(np.arange(width), np.arange(height))

@@ -1,4 +1,4 @@
-"""Images that show no ground: how many are unknown, before and with the check, and its price.
+"""Images that show no terrain: how many are unknown, before and with the check, and its price.
 
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_no_ground
 
@@ -86,7 +86,7 @@ def even(rng: np.random.Generator, size: int, low: float, high: float, noise: fl
 
 
 def without_ground(root: Path, size: int) -> Shown:
-    """Patches that show no ground."""
+    """Patches that show no terrain."""
     rng = np.random.default_rng(5)
     front, rear = (read_image(root / "camera-frames" / "husky" / f"camera_{of}.jpg")
                    for of in ("front", "rear"))  # fmt: skip

@@ -32,7 +32,7 @@ def best_course(
 ) -> Judged | None:
     """The course that windows show best of those that they take turns with; None where none does.
 
-    Windows of 2 s by turns: what lasts shorter than about two of them is not seen.
+    Windows of 2 s by turns: what lasts shorter than about two of them is not detected.
     """
     coarse = at_fewer_poses(fitter.measured, fitter.calibration, POSES)
     rows = coarse.rows(before.base, before.effects)

@@ -10,7 +10,7 @@ from odometry.windows.dense import DenseWindows
 
 
 def rounded_m(run: Run) -> float:
-    """Step to which measured positions of a run were rounded; 0 where none is seen."""
+    """Step to which measured positions of a run were rounded; 0 where no rounding is detected."""
     if run.pose is None:
         return 0.0
     positions = run.pose.stack("x", "y")

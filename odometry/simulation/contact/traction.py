@@ -27,7 +27,7 @@ class Traction:
     law : FrictionLaw
     lateral_share : float
         Traction across the tread's direction against that along it, by the same slip. At low
-        speed on level ground neither the coefficient nor the law moves the ICRs of wide turns,
+        speed on level terrain neither the coefficient nor the law moves the ICRs of wide turns,
         but this does: in the middle of four equal wheels (track B, wheelbase L) the effective
         width is B (1 + share (L / B)^2).
     """

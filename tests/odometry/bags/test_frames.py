@@ -121,7 +121,7 @@ def test_a_camera_frame_that_is_no_optical_frame_looks_along_its_x_axis(tmp_path
     static(bag, ("base_footprint", "camera_optical", (0.4, 0.1, 0.6), down))
     run, said = tables(bag, tmp_path)
     assert run.settings["camera"]["mount"] == pytest.approx([0.4, 0.1, 0.6, 0, 0.5, 0], abs=1e-9)
-    assert any("its x axis is taken as the view" in note for note in said.notes)
+    assert any("its x axis is taken as the viewing direction" in note for note in said.notes)
 
 
 def test_the_height_of_base_link_may_be_given(tmp_path):

@@ -34,7 +34,7 @@ def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera, off_deg):
     fits, stated = map(float, re.findall(r"[0-9.]+\d", found["camera_lens"])[:2])
     assert fits == pytest.approx(np.degrees(camera.mount[4]), abs=0.3)
     assert stated == pytest.approx(fits + off_deg, abs=0.3)
-    assert found["camera_lens"].startswith("The camera looks")
+    assert found["camera_lens"].startswith("The camera points")
 
 
 @pytest.mark.parametrize("times", [0.5, 0.8, 1.2, 2.0])

@@ -37,7 +37,7 @@ def test_a_doubtful_name_is_unknown_with_its_reason():
         (DOUBTED, Likeness(0, float("nan"), float("nan"), ())),
         (replace(DOUBTED, probability_right=0.7), UNLIKE),
         (replace(DOUBTED, probability_right=None), UNLIKE),
-        (replace(DOUBTED, label="unknown", reason="no ground: overexposed"), UNLIKE),
+        (replace(DOUBTED, label="unknown", reason="no terrain: overexposed"), UNLIKE),
     ],
 )
 def test_every_other_answer_stays(answer, likeness):

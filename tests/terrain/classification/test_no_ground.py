@@ -1,4 +1,4 @@
-"""Images that show no ground are unknown, and it is said why."""
+"""Images that show no terrain are unknown, and it is said why."""
 
 import json
 from copy import copy
@@ -177,7 +177,7 @@ def test_own_statistics_and_chen2023(model, rng):
 def test_the_note_counts_and_is_silent_of_others():
     assert no_ground_note(["", "astride: mud on the left, snow on the right"]) is None
     note = no_ground_note([SKY, "", SKY, DARK])
-    assert note.startswith("3 of 4 images show no ground")
+    assert note.startswith("3 of 4 images show no terrain")
     assert "smooth and blue as a sky (2), black (1)" in note
 
 
@@ -188,14 +188,14 @@ def test_classify_says_so_of_each_image_and_of_all(model, rng, tmp_path):
         assert cv2.imwrite(file, image[..., ::-1])
     answer = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *files])
     assert answer.exit_code == 0
-    assert "Note: 1 of 2 images show no ground and are unknown: black (1)" in answer.stderr
+    assert "Note: 1 of 2 images show no terrain and are unknown: black (1)" in answer.stderr
     rows = answer.stdout.splitlines()
     assert rows[1].split()[1:3] == ["unknown", "-"]
-    assert "no ground: black" in rows[1]
+    assert "no terrain: black" in rows[1]
     assert rows[2].split()[1] == "slabs"
     assert 0.5 < float(rows[2].split()[2]) <= 1
     answer = CliRunner().invoke(classify, [str(tmp_path / "a.model"), *files, "--json"])
-    assert [row["reason"] for row in json.loads(answer.stdout)] == ["no ground: black", ""]
+    assert [row["reason"] for row in json.loads(answer.stdout)] == ["no terrain: black", ""]
 
 
 def test_the_label_of_a_region_says_why(model, rng):

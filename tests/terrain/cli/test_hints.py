@@ -56,8 +56,8 @@ def test_images_that_show_no_ground_are_counted():
     of = starting(["grass", "unknown", "unknown"])
     for image_label in of.watcher.image_labels[1:]:
         image_label.reason = SKY
-    (hint,) = [one for one in hints(of, vision=True) if "no ground" in one]
-    assert hint.startswith("2 of 3 images show no ground and are unknown: smooth and blue")
+    (hint,) = [one for one in hints(of, vision=True) if "no terrain" in one]
+    assert hint.startswith("2 of 3 images show no terrain and are unknown: smooth and blue")
 
 
 def test_where_most_images_are_unknown_the_path_is_to_be_compared():
