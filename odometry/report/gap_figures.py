@@ -62,12 +62,18 @@ def closing_picture(result: GapResult, folder: Path) -> Picture:
             color="#555555",
         )
 
+    stages = (
+        "before and after the effects were added (and the model moved within what its calibration "
+        "leaves open)"
+        if result.effects
+        else "of the model as calibrated (before) and moved within what its calibration leaves "
+        "open (after); no effect was added"
+    )
     return Picture(
         save_figure(folder / "gap_closing.png", (WIDTH_IN, 2.6), draw),
-        "The gap before and after the effects were added, with the noise floor.",
-        f"RMS {measure.error} over windows of {result.horizon_s:g} s before and after the effects "
-        "were added (and the model moved within what its calibration leaves open). Bars and grey "
-        "band: 95 % intervals by a bootstrap of pieces of the runs.",
+        "The gap before and after, with the noise floor.",
+        f"RMS {measure.error} over windows of {result.horizon_s:g} s {stages}. Bars and grey band: "
+        "95 % intervals by a bootstrap of pieces of the runs.",
     )
 
 

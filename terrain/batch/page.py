@@ -13,8 +13,8 @@ from terrain.batch.row import Learned, Row
 from terrain.report.tables import NOTHING, number
 
 HEADER = (
-    *("run", "odometer [m per m]", "its heading [degrees per m]", "estimate [m per m]"),
-    *("gyroscope [m per m]", "against", "driven [m]", "time [s]", "switches", "flags"),
+    *("run", "flags", "odometer [m per m]", "its heading [degrees per m]", "estimate [m per m]"),
+    *("gyroscope [m per m]", "against", "driven [m]", "time [s]", "switches"),
 )
 HOW = (
     "Mean errors per metre of wheel travel, worst odometer first. The estimate is evaluated with "
@@ -66,6 +66,7 @@ def _runs(rows: Sequence[Row]) -> Grid:
     cells = [
         (
             row.name,
+            str(len(row.flags)) if row.flags else NOTHING,
             number(row.numbers["odometer_m_per_m"], 4),
             number(row.numbers["odometer_deg_per_m"], 4),
             number(row.numbers["estimate_m_per_m"], 4),
@@ -74,7 +75,6 @@ def _runs(rows: Sequence[Row]) -> Grid:
             number(row.numbers["wheel_travel_m"], 1),
             number(row.numbers["duration_s"], 1),
             str(row.counts["switches"]),
-            str(len(row.flags)) if row.flags else NOTHING,
         )
         for row in rows
     ]

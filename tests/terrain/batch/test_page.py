@@ -20,7 +20,7 @@ def test_the_notes_name_the_flags_that_the_table_counts(tmp_path):
     flagged = replace(GOOD, name="b", flags=("wheel_scale", "late_poses"), notes=("It is late.",))
     learned = Learned(ParameterSet(), {}, ())
     page = write_batch_page([GOOD, flagged], learned, tmp_path / "a.html").read_text("utf-8")
-    assert page.count(f"<td>{NOTHING}</td></tr>") == 1  # of the run without a flag
-    assert page.count("<td>2</td></tr>") == 1
+    assert page.count(f"a</a></th><td>{NOTHING}</td>") == 1
+    assert page.count("b</a></th><td>2</td>") == 1
     assert "Flags: wheel scale, late poses." in page
     assert page.count("It is late.") == 1
