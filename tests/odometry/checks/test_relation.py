@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.checks.relation import relation
+from odometry.checks.relation import PIECES, pieces, relation
 
 
 def test_against_the_normal_equations_without_outliers(rng):
@@ -32,3 +32,12 @@ def test_too_little_is_no_relation():
     assert relation(x[:5], x[:5]) is None
     assert relation(x, x, 2 * x) is None
     assert relation(np.full(100, np.nan), x) is None
+
+
+def test_pieces_are_quarters_of_what_was_measured(rng):
+    """Half of the windows have no target, and each quarter of the others has a slope of its own."""
+    x = rng.uniform(0.5, 1.0, 800)
+    slopes = np.repeat(np.arange(1.0, PIECES + 1), 400 // PIECES)
+    target = np.concatenate([np.full(400, np.nan), slopes]) * x
+    found = [piece.slope for piece in pieces(target, x)]
+    np.testing.assert_allclose(found, np.arange(1, PIECES + 1))
