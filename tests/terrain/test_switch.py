@@ -8,12 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
-from terrain.place_labels import DRIFT, Footprint
 from terrain.switch import SwitchConfig
 from tests.terrain.straight_drives import (
     AHEAD_M,
     BOTH_RULES,
-    FOOTPRINT,
     changes,
     drive,
     seen_at,
@@ -254,24 +252,3 @@ def test_with_true_labels_the_change_is_near_the_edge(rule, strips, spacing_m):
     assert [name for _, name in found] == [true_at(edge + 1e-6) for edge in edges]
     for edge, (x, _) in zip(edges, found, strict=True):
         assert abs(x - edge) <= spacing_m / 2 + 0.5 / 15 + 0.051
-
-
-def test_of_places_that_are_forgotten_together_the_last_one_counts():
-    """Grass, then gravel, and no label until both are too far behind."""
-    switch = start("sand")
-    for x, label in enumerate(["grass"] * 5 + ["gravel"] * 5):
-        switch = switch.add_label(seen_at(float(x), label))
-    far_m = 9.0 + 2 * FOOTPRINT.radius_m / DRIFT
-    assert switch.add_label(seen_at(far_m, "unknown")).before == "gravel"
-
-
-def test_points_of_a_footprint_are_even_over_all_of_it():
-    points = Footprint(0.9, 0.5).points
-    assert points.shape == (75, 2)
-    along, across = (np.unique(column.round(9)) for column in points.T)
-    for places, length_m in ((along, 0.9), (across, 0.5)):
-        steps = np.diff(places)
-        np.testing.assert_allclose(steps, length_m / len(places))
-        np.testing.assert_allclose(
-            [places[0], places[-1]], np.array([-1, 1]) * (length_m - steps[0]) / 2
-        )

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from terrain.place_labels import DRIFT, Footprint
 from tests.terrain.straight_drives import (
     AHEAD_M,
     BOTH_RULES,
@@ -132,3 +133,24 @@ def test_a_robot_that_went_astray_knows_no_place(rule):
     for k in range(6):
         without_labels = without_labels.add_label(seen_at(2.0 + 0.25 * k, "gravel"))
     assert without_labels.at(6.0, np.array([3.1, 0.0, 0.0]), 3.1).in_force == "gravel"
+
+
+def test_of_places_that_are_forgotten_together_the_last_one_counts():
+    """Grass, then gravel, and no label until both are too far behind."""
+    switch = start("sand")
+    for x, label in enumerate(["grass"] * 5 + ["gravel"] * 5):
+        switch = switch.add_label(seen_at(float(x), label))
+    far_m = 9.0 + 2 * FOOTPRINT.radius_m / DRIFT
+    assert switch.add_label(seen_at(far_m, "unknown")).before == "gravel"
+
+
+def test_points_of_a_footprint_are_even_over_all_of_it():
+    points = Footprint(0.9, 0.5).points
+    assert points.shape == (75, 2)
+    along, across = (np.unique(column.round(9)) for column in points.T)
+    for places, length_m in ((along, 0.9), (across, 0.5)):
+        steps = np.diff(places)
+        np.testing.assert_allclose(steps, length_m / len(places))
+        np.testing.assert_allclose(
+            [places[0], places[-1]], np.array([-1, 1]) * (length_m - steps[0]) / 2
+        )
