@@ -15,7 +15,7 @@ SHARES = (
     *("events_predicted", "least_held_out", "least_of_rest", "least_of_all", "most_without"),
     *("most_beaten", "least_better", "least_beside", "main_part", "one_sided", "no_farther"),
     *("much_farther", "largest_growth", "base_probability"),
-    *("least_odds", "sure_odds"),
+    *("least_odds", "sure_odds", "still_off"),
 )
 FEWEST = {
     "folds": 2,
@@ -165,8 +165,9 @@ class GapConfig(SmoothConfig):
     jumping_times : float
         As many jumps a step as in the calibration runs, at least: those with a fault show 4 and
         more where the others show none.
-    outlier_probability : float
-        With which the calibration runs may have as many by chance.
+    outlier_probability, still_off : float
+        With which the calibration runs may have as many by chance; and the share of its square
+        that a jump adds at least to the gap beside names (a swaying mast adds a thirtieth).
     most_windows : int
         Where there are more, as many of them at even distances are used to fit.
     most_poses : int
@@ -234,6 +235,7 @@ class GapConfig(SmoothConfig):
     most_jumping: float = 0.1
     jumping_times: float = 4.0
     outlier_probability: float = 0.001
+    still_off: float = 0.25
     most_windows: int = 300
     most_poses: int = 40
 

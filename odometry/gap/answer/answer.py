@@ -74,6 +74,17 @@ def named_outliers(outliers: Outliers, before_m: float, after_m: float) -> Named
     )
 
 
+def are_explained(outliers: NamedEffect, config: GapConfig) -> bool:
+    """Whether poses that were left out are hardly off beside what has a name by now.
+
+    An antenna that sways far is no jump. Where they are, windows that end at them alone make the
+    square of the gap larger by their share times the square of their distance.
+    """
+    share, distance_m = outliers.added.values
+    more = outliers.gap_before**2 - outliers.gap_after**2
+    return bool(more < config.still_off * share * distance_m**2)
+
+
 def is_first(held_out: Closing, without: Gap, config: GapConfig) -> bool:
     """Whether poses that were left out are the main part of what an answer closes on held-out data.
 

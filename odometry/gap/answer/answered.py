@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
+from odometry.effects.reference_outliers import ReferenceOutliers
 from odometry.gap.answer.answer import (
+    are_explained,
     drives_apart,
     is_first,
     leaves_most,
@@ -121,8 +123,12 @@ def _with_outliers(
     if is_first(closed.shown[1], alone, config):
         believed_m = gap_m(known.base, (), fitted)
         return (named_outliers(outliers, on_measured.before.value, believed_m), *named)
-    raw_m = gap_m(closed.base, closed.effects, ready.raw_scenes[0])
-    return (*named, named_outliers(outliers, raw_m, on_measured.after.value))
+    raw_m, after_m = (
+        gap_m(closed.base, closed.effects, ready.raw_scenes[0]),
+        on_measured.after.value,
+    )
+    beside = named_outliers(outliers, raw_m, after_m)
+    return named if named and are_explained(beside, config) else (*named, beside)
 
 
 def _verdict(
@@ -131,7 +137,7 @@ def _verdict(
     """The first name, unless it is of poses that were left out alone and most of the gap stays."""
     if not named:
         return verdict_of(found, closed.shown[1])
-    alone = len(named) == 1 and ready.outliers is not None
+    alone = len(named) == 1 and isinstance(named[0].added.effect, ReferenceOutliers)
     if alone and leaves_most(closed.shown[1], ready.config):
         return "unknown"
     return named[0].added.effect.name

@@ -8,9 +8,11 @@ import pytest
 
 from odometry.effects.corrected import Added
 from odometry.effects.lateral_skid import LateralSkid
+from odometry.effects.reference_outliers import JumpingPoses
 from odometry.effects.residual import Residual
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.answer.answer import (
+    are_explained,
     drives_apart,
     is_first,
     leaves_most,
@@ -18,7 +20,7 @@ from odometry.gap.answer.answer import (
     rivals_of,
     verdict_of,
 )
-from odometry.gap.answer.result import Closing, Equivalent
+from odometry.gap.answer.result import Closing, Equivalent, NamedEffect
 from odometry.gap.config import GapConfig
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.statistic import Gap
@@ -147,3 +149,18 @@ def test_poses_left_out_are_no_answer_where_most_stays(after_m, low_m, most):
     """Of 0.6 m over a floor of 0.1 m: less than half, surely above the floor."""
     held = Closing(Gap(0.6, 0.3, 0.9), Gap(after_m, low_m, 0.7), Gap(0.1, 0.08, 0.12))
     assert leaves_most(held, GapConfig()) == most
+
+
+@pytest.mark.parametrize(
+    ("before_m", "explained"),
+    [
+        pytest.param(0.25, False, id="windows that end at them are as far off as they are"),
+        pytest.param(0.16, False, id="a third of their square stays"),
+        pytest.param(0.10, True, id="what has a name by now moves them as well"),
+    ],
+)
+def test_poses_are_no_jumps_where_a_name_explains_them(before_m, explained):
+    """A share of 0.05 at 0.7 m adds 0.0245 m^2 to a gap of 0.09 m."""
+    jumps = Added(JumpingPoses(((1.0,),)), np.array([0.05, 0.7]))
+    named = NamedEffect(jumps, np.zeros(2), np.ones(2), before_m, 0.09, 100.0)
+    assert are_explained(named, GapConfig()) is explained
