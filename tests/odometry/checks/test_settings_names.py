@@ -1,10 +1,12 @@
 """Keys of run.toml that are misspelt, and sizes that no robot has."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from odometry.checks.recording import check_recording
+from odometry.checks.settings_names import robot_sizes
 from odometry.run import Robot
 from tests.odometry.checks.faulty import width
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
@@ -84,3 +86,26 @@ def test_a_value_of_a_wrong_type_is_not_called_another_unit(toml, cause, tmp_pat
     (found,) = check_recording(tmp_path).findings
     assert cause in found.cause
     assert str(tmp_path / "run.toml") in found.seen
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        ("track_width", 0.05, 6.0),
+        ("length", 0.05, 15.0),
+        ("width", 0.05, 8.0),
+        ("wheel_radius", 0.01, 2.0),
+        ("mass", 0.1, 1e5),
+    ],
+)
+def test_a_size_is_named_where_it_is_beyond_either_end(name, least, most):
+    run = winding()
+
+    def found(value):
+        sized = replace(run, robot=replace(run.robot, **{name: value}))
+        return [one.seen for one in robot_sizes(SimpleNamespace(run=sized))]
+
+    assert found(least) == found(most) == []
+    for value in (0.99 * least, 1.01 * most):
+        (seen,) = found(value)
+        assert f"[robot] {name} = {value:g}" in seen
