@@ -45,20 +45,27 @@ def what_to_do(result: GapResult) -> str:
 
 def _remedy(result: GapResult) -> str:
     if not result.effects:
-        if is_not_held_out(result):
-            return "Hold out whole runs that are driven as the measured ones are (--holdout)."
-        if result.verdict == "unknown":
-            return "Look at the worst stretches in report.html, and record what may differ there."
-        if is_doubtful(result):
-            return (
-                "Do not rely on this: hold out whole runs with the same kind of drive "
-                "(--holdout), and try again."
-            )
-        return "Keep the model as it is."
+        return _of_nothing(result)
     if result.verdict == "unknown" and not result.depends_on:
         return "Look at the worst stretches in report.html, and record what may differ there."
     remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
     return f"{'; '.join(remedies)}.".capitalize()
+
+
+def _of_nothing(result: GapResult) -> str:
+    """What to do where nothing was added."""
+    if is_not_held_out(result):
+        return "Hold out whole runs that are driven as the measured ones are (--holdout)."
+    if result.verdict == "unknown":
+        return "Look at the worst stretches in report.html, and record what may differ there."
+    if is_doubtful(result):
+        return (
+            "Do not rely on this: hold out whole runs with the same kind of drive "
+            "(--holdout), and try again."
+        )
+    if is_closed_by_the_base(result):
+        return "Identify the parameters on runs like the measured ones, and run gap again."
+    return "Keep the model as it is."
 
 
 def faults_of_sensors(result: GapResult) -> list[str]:
@@ -85,6 +92,12 @@ def is_doubtful(result: GapResult) -> bool:
     """Whether noise does not explain the measured runs, as they were: no "none" is sure then."""
     measured, _ = result.closings
     return measured.before.is_above(measured.noise_floor)
+
+
+def is_closed_by_the_base(result: GapResult) -> bool:
+    """Whether other values of the base, and no effect, surely lower the gap on held-out data."""
+    held = result.closings[1]
+    return not result.effects and held.after.high < held.before.low
 
 
 def listed(names: Sequence[str], word: str = "and") -> str:

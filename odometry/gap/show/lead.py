@@ -11,6 +11,7 @@ from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.statistic import MANY
 from odometry.gap.show.advice import (
     faults_of_sensors,
+    is_closed_by_the_base,
     is_doubtful,
     is_not_held_out,
     listed,
@@ -126,6 +127,11 @@ def _nothing_named(result: GapResult, model: str) -> str:
             "a smooth function of what was recorded, nor a slow course in run time explains it. A "
             "reference that is noisier than in the calibration looks the same."
         )
+    return _none(result, model)
+
+
+def _none(result: GapResult, model: str) -> str:
+    held = result.closings[1]
     if not result.measured.before.has_interval:
         return (
             f"Whether something is missing in {model} is undetermined: the measured windows are "
@@ -136,6 +142,13 @@ def _nothing_named(result: GapResult, model: str) -> str:
             f"Nothing is missing in {model} that held-out data confirm (none), but the "
             f"{held.before.measure.noun} on the measured runs is above the noise "
             f"floor{_refused(result)}."
+        )
+    if is_closed_by_the_base(result):
+        return (
+            f"Nothing is missing in {model} by the noise floor (none), but other values of its "
+            f"parameters lower the {held.before.measure.noun} on held-out data from "
+            f"{of_two_figures(held.before)} to {of_two_figures(held.after)}: the calibration runs, "
+            "which the floor is of, are noisier than these, or they differ."
         )
     return f"Nothing that these runs could show is missing in {model} (none)."
 

@@ -142,6 +142,19 @@ def test_none_admits_a_gap_above_the_floor(none_result):
     assert said[0].endswith(": time_offset or a smooth function would close part of it there.")
 
 
+def test_none_that_the_base_closes_with_other_values_is_no_advice_to_keep_it(none_result):
+    """The noise floor is of calibration runs that are noisier than the measured ones."""
+    before, after = Gap(0.116, 0.10, 0.13), Gap(0.029, 0.02, 0.04)
+    floor = Gap(0.2, 0.15, 0.25)
+    closing = replace(none_result.holdout, before=before, after=after, noise_floor=floor)
+    missing, _, to_do, *_ = sentences(replace(none_result, holdout=closing))
+    assert "(none), but other values of its parameters lower the gap on held-out data" in missing
+    assert "from 0.12 m to 0.029 m" in missing
+    assert to_do.startswith("Identify the parameters on runs like the measured ones")
+    near = replace(closing, after=Gap(0.09, 0.08, 0.11))
+    assert sentences(replace(none_result, holdout=near))[2].startswith("Keep the model as it is")
+
+
 def test_unknown_without_any_name_says_so(none_result):
     sure = replace(none_result.holdout, before=Gap(0.2, 0.15, 0.3))
     first, _, to_do, *_ = sentences(replace(none_result, verdict="unknown", holdout=sure))
