@@ -113,6 +113,8 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         found["alike"] = track.alike.any(axis=1)
     if track.turns_are_off is not None:
         found["turns"] = track.turns_are_off
+    if track.contradicted is not None:
+        found["contradicted"] = track.contradicted
     if track.headings_disagree is not None:
         found["headings"] = track.headings_disagree
     if track.blocked is not None:

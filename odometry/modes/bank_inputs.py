@@ -143,7 +143,8 @@ def pose_signals(run: Run) -> Signals:
         measured[np.searchsorted(stamps_s, odometry_s), 3] = yaw_rates
     speeds = run.odometry.stack("v_left", "v_right")[rows]
     gaps_s = odometry_gaps(run).spans_s
-    return Signals(stamps_s, speeds, measured, row_terrains(run)[rows], gaps_s)
+    labels, check = row_terrains(run)[rows], heading_check(run)
+    return Signals(stamps_s, speeds, measured, labels, gaps_s, check)
 
 
 def yaw_rates_of(run: Run) -> FloatArray | None:

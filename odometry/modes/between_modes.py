@@ -15,12 +15,13 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.innovation_test import windowed
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.response import SLOWEST_HZ, lagged
+from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 
 WINDOW_S = 16.0
 TOLERANCE = 0.01  # of the yaw rate: no mode is identified better
 LEAST_INFORMATION = 1.0  # on the share: less determines none
+SURE_SHARE = 0.25  # standard deviation of the share of a mode, at most
 LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond that of the filters
 """Chosen on clean runs of seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`, of which
 none is taken for a terrain between two; windows of 10 and 12 s take one of 18."""
@@ -52,10 +53,12 @@ class BetweenModes:
 
 def between_modes(
     signals: Signals,
-    modes: VelocityModes,
+    modes: VelocityModes | TractionModes,
     biases_rad_s: FloatArray,
     independent: float,
     config: ModesConfig | None = None,
+    *,
+    stay_s: float = np.inf,
 ) -> BetweenModes | None:
     """Follow where turns lie between two modes.
 
@@ -63,61 +66,65 @@ def between_modes(
     ----------
     signals : Signals
         Measured where it depends on the modes.
-    modes : VelocityModes
+    modes : VelocityModes or TractionModes
     biases_rad_s : (N,)
         Of the filters.
     independent : float
         Share of a measurement that is news.
     config : ModesConfig, optional
+    stay_s : float
+        For which a terrain may last: a part of the window so long that is surely of a mode, or
+        beyond, is of no terrain between two. By default only a change within the window is.
 
     Returns
     -------
     BetweenModes or None
-        None of a single mode.
+        None of a single mode, and of modes of which one turns more in some turns and less in
+        others: what lies between two of them may be a third.
     """
     config = config or ModesConfig()
-    gains = modes.steady_gains()[:, 1] @ [-0.5, 0.5]
+    of_turns = modes.turn_gains()
+    gains = of_turns.mean(axis=1)
     order = np.argsort(gains)
+    if (np.diff(of_turns[order], axis=0) < 0).any():
+        return None
     pairs = list(zip(order[:-1].tolist(), order[1:].tolist(), strict=True))
     if not pairs:
         return None
-    said = _said_rad_s(signals, modes)
-    measured = signals.measured[:, 1] - biases_rad_s
-    half = np.searchsorted(signals.stamps_s, signals.stamps_s - WINDOW_S / 2, side="right") - 1
+    said = modes.yaw_rates_rad_s(signals.stamps_s, signals.tread_speeds_m_s)
+    measured = signals.measured[:, -1] - biases_rad_s
+    variances = modes.yaw_rate_variances()
     place, share = np.full(len(signals), -1), np.full(len(signals), np.nan)
     for row, (first, second) in enumerate(pairs):
         apart, off = said[:, second] - said[:, first], measured - said[:, first]
-        worth = independent / modes.measurement_variance[[first, second], 1].max()
+        worth = independent / variances[[first, second]].max()
         error = TOLERANCE * gains[second] / max(gains[second] - gains[first], 1e-12)
-        whole, late = (
-            _sums(apart, off, signals.stamps_s, window_s) * worth
-            for window_s in (WINDOW_S, WINDOW_S / 2)
+        (whole,), halves, stays = (
+            [of * worth for of in _sums(apart, off, signals.stamps_s, parts)]
+            for parts in (1, 2, int(WINDOW_S / stay_s))
         )
-        early = np.where(half >= 0, late[:, half], np.nan)
         holds = _inside(whole, error, config.between_sigmas)
-        for part in (early, late):
+        for part in halves:
             holds &= _inside(part, error, config.between_half_sigmas)
+        for part in stays:
+            holds &= ~_is_a_mode(part)
         place[holds], share[holds] = row, _share(whole)[0][holds]
     names = tuple((modes.names[first], modes.names[second]) for first, second in pairs)
     return BetweenModes(names, place, share)
 
 
-def _said_rad_s(signals: Signals, modes: VelocityModes) -> FloatArray:
-    """Yaw rates (N, M) of each mode, which follow the treads late and are not corrected."""
-    steady = modes.steady_yaw_rates(signals.tread_speeds_m_s)
-    lags_s = 1 / np.maximum(-modes.A[:, 1, 1], SLOWEST_HZ)
-    columns = [
-        lagged(column, signals.stamps_s, float(lag_s))
-        for column, lag_s in zip(steady.T, lags_s, strict=True)
-    ]
-    return np.column_stack(columns)
-
-
-def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, window_s: float) -> FloatArray:
-    """Sums (5, N) of the normal equations over a window up to each stamp."""
+def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, parts: int) -> list[FloatArray]:
+    """Sums (5, N) of the normal equations over each part of a window up to each stamp."""
     known = np.isfinite(off)
     d, y = np.where(known, apart, 0.0), np.where(known, off, 0.0)
-    return windowed(np.column_stack([known, d, d * d, y, d * y]), stamps_s, window_s).T
+    columns = np.column_stack([known, d, d * d, y, d * y])
+    found = []
+    for part in range(parts):
+        sums = windowed(columns, stamps_s, WINDOW_S / parts).T
+        ends_s = stamps_s - part * WINDOW_S / parts
+        rows = np.searchsorted(stamps_s, ends_s, side="right") - 1
+        found.append(np.where(rows >= 0, sums[:, rows], np.nan))
+    return found
 
 
 def _share(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -134,3 +141,9 @@ def _inside(sums: FloatArray, error: float, bound: float) -> BoolArray:
     share, variance = _share(sums)
     margin = bound * np.sqrt(variance + error**2)
     return np.asarray((share - margin > 0) & (share + margin < 1))
+
+
+def _is_a_mode(sums: FloatArray) -> BoolArray:
+    """Where (N,) the share is surely that of a mode or beyond."""
+    share, variance = _share(sums)
+    return np.asarray(((share <= 0) | (share >= 1)) & (variance < SURE_SHARE**2))

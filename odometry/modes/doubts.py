@@ -87,6 +87,17 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, off),
             )
         )
+    if track.contradicted is not None:
+        off = track.contradicted & sure & undetermined
+        found.append(
+            Doubt(
+                "the motion contradicted the most probable mode, then or not long before, for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain, load or set of wheels, and check poses, "
+                "gyroscope and both treads",
+                _share(followed, off),
+            )
+        )
     if track.blocked is not None and track.blocked.any():
         found.append(
             Doubt(

@@ -136,12 +136,10 @@ def gyroscope_trust(
     signals: Signals,
     biases_rad_s: FloatArray,
     sigmas_rad_s: FloatArray,
-    readings: Mapping[int, BiasReading],
-    config: ModesConfig | None = None,
+    open_: BoolArray,
 ) -> GyroscopeTrust:
-    """Of the estimated biases (N,) with deviations (N,) of the filters, and of their readings."""
-    open_, stamps_s = bias_is_open(biases_rad_s, readings, config), signals.stamps_s
-    check = signals.heading_check
+    """Of the estimated biases (N,) with deviations (N,) of the filters, which may be open (N,)."""
+    stamps_s, check = signals.stamps_s, signals.heading_check
     if check is None:
         return GyroscopeTrust(open_, np.full(len(stamps_s), np.nan))
     last = np.searchsorted(check.stamps_s, stamps_s, side="right") - 1

@@ -195,6 +195,16 @@ def identify_traction_modes(
         + _left_open(fits, scenes),
         measurement_variance=np.array([position, position, yaw, of_yaw_rate.variance]),
         variance_growth=of_yaw_rate.growth,
+        fastest_m_s=_fastest_m_s(scenes),
+    )
+
+
+def _fastest_m_s(scenes: dict[str, list[DenseWindows]]) -> float:
+    """Largest speed of a tread in the windows of all modes."""
+    return max(
+        float(np.abs(scene.inputs.tread_speeds_m_s[inside(scene)]).max())
+        for of in scenes.values()
+        for scene in of
     )
 
 

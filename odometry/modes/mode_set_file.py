@@ -45,7 +45,7 @@ HEAD = {
         Key("variance_growth", (), "0 or more"),
     ),
 }
-OPTIONAL = {"velocity": (Key("fastest_m_s", (), "above 0"),), "traction": ()}
+OPTIONAL = (Key("fastest_m_s", (), "above 0"),)
 MODE = {
     "velocity": (
         Key("A", (2, 2)),
@@ -87,7 +87,7 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     head |= {one.name: _plain(getattr(modes, one.name)) for one in HEAD[modes.kind]}
     head |= {
         one.name: _plain(getattr(modes, one.name))
-        for one in OPTIONAL[modes.kind]
+        for one in OPTIONAL
         if np.isfinite(getattr(modes, one.name))
     }
     tables = {
@@ -127,8 +127,8 @@ def read_mode_set(file: Path) -> ModeSet:
     if not isinstance(tables, dict) or not tables:
         raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
     kind, where = head["kind"], f"{file}: [modes]"
-    _only(head, {"kind", "source", *(o.name for o in (*HEAD[kind], *OPTIONAL[kind]))}, where)
-    given = (*HEAD[kind], *(one for one in OPTIONAL[kind] if one.name in head))
+    _only(head, {"kind", "source", *(o.name for o in (*HEAD[kind], *OPTIONAL))}, where)
+    given = (*HEAD[kind], *(one for one in OPTIONAL if one.name in head))
     values: dict[str, Any] = {one.name: _array(head, one, where) for one in given}
     dwell = Key("dwell_s", (), "above 0")
     keys = (*MODE[kind], dwell)

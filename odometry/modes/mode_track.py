@@ -43,6 +43,8 @@ class ModeTrack:
         Where the robot turns by more than one mode and by less than the next; without it nowhere.
     headings_disagree : (N,) or None
         Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
+    contradicted : (N,) or None
+        Where the most probable mode was contradicted not long ago; without it nowhere.
     felt : (N, M) or None
         Probability of each mode by feel alone; None without a model of feel.
     blocked : (N,) or None
@@ -74,6 +76,7 @@ class ModeTrack:
     travel: TravelCheck | None = None
     between: BetweenModes | None = None
     headings_disagree: BoolArray | None = None
+    contradicted: BoolArray | None = None
     felt: FloatArray | None = None
     blocked: BoolArray | None = None
     config: ModesConfig = field(default_factory=ModesConfig)

@@ -31,7 +31,8 @@ class ModesConfig:
         Of a sum of innovations over six seconds, beyond which no mode is named: small misfits last.
     turn_sigmas, turn_holds_s : float
         Of a sum of innovations by the side of the turn, and for how long after it no mode is named:
-        clean runs of models that err a little reach 3 and more.
+        clean runs of models that err a little reach 3 and more. Traction modes have no such sums:
+        one that six seconds contradicted is not named again for as long.
     travel_sigmas : float
         By which a mode travels another distance than was measured.
     headings_share, headings_sigmas : float

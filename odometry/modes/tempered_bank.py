@@ -9,13 +9,12 @@ from odometry.estimation.ekf_bank import EkfBank, wrapped
 from odometry.estimation.imm import Bank
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
+from odometry.modes.faster import faster_than
 from odometry.modes.gyroscope_bias import moving
 from odometry.windows.spans import touched, within
 
 OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution
 MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more
-
-MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models are not valid
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,7 @@ def usable_measurements(signals: Signals, gap_ends: IntArray, fastest_m_s: float
     Not while stationary or blocked, nor in a gap, nor far above the speeds that the modes were
     identified at.
     """
-    faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > MOST_FASTER * fastest_m_s
+    faster = faster_than(signals.tread_speeds_m_s, fastest_m_s)
     informative = moving(signals) & ~np.append(False, faster[:-1])
     informative &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
     informative &= ~within(signals.stamps_s, signals.blocked_s)

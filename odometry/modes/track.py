@@ -10,14 +10,14 @@ from odometry.arrays import FloatArray
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenGround, mode_chains
-from odometry.modes.gyroscope_bias import bias_readings
+from odometry.modes.gyroscope_bias import bias_is_open, bias_readings, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_beliefs import ModeBeliefs, ModeEstimators
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.tempered_bank import independent_share, usable_measurements
-from odometry.modes.track_checks import contradictions, gyroscope_trust_of
+from odometry.modes.track_checks import contradictions
 from odometry.run import Run
 from odometry.windows.spans import within
 
@@ -91,6 +91,7 @@ def follow_signals(
     transitions = [chain.transition for chain in chains]
     estimators = ModeEstimators(mode_set, transitions, independent, config.floor)
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
+    gap_ends = gap_ends[gap_ends < len(signals)]
     measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
     roughness, readings = modes.roughness(signals), bias_readings(signals)
     size, states = len(signals), modes.model().states
@@ -118,6 +119,10 @@ def follow_signals(
         squared[row] = _normalised_squared(belief, measured[row])
     leading = probabilities.argmax(axis=1)
     left = Innovations(innovations, leading, signals.stamps_s, independent)
+    # headings that filters measure confirm a bias: no mode alone says that there is one
+    open_ = np.zeros(size, dtype=np.bool_)
+    if not modes.state_angles:
+        open_ = bias_is_open(means[:, -1], readings, config)
     return ModeTrack(
         mode_set.names,
         signals.stamps_s,
@@ -127,7 +132,7 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
-        gyroscope_trust_of(signals, mode_set, (means[:, -1], sigmas[:, -1]), config),
+        gyroscope_trust(signals, means[:, -1], sigmas[:, -1], open_),
         *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
         blocked=within(signals.stamps_s, signals.blocked_s),
         config=config,

@@ -5,7 +5,7 @@ alone; with the yaw rate a gyroscope can be heard, and the robot may turn a litt
 commanded.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,12 +13,15 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.ekf_bank import EkfModel
 from odometry.geometry import se2
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals, pose_signals
-from odometry.modes.response import SHORTEST_LAG_S
+from odometry.modes.faster import with_faster_spans
+from odometry.modes.response import SHORTEST_LAG_S, lagged
 from odometry.run import Run
 
 MEASURED = np.hstack([np.eye(4), np.array([[0.0], [0.0], [0.0], [1.0]])])  # yaw rate and bias
 
 LEFT_TURN, RIGHT_TURN = 0, 1
+TURNS = np.array([[0.8, 1.0], [1.0, 0.8], [0.3, 0.9], [0.9, 0.3], [-0.5, 0.5]])
+"""Tread speeds [m/s] of wide and of tight turns to both sides, and of one on the spot."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +54,9 @@ class TractionModes:
     variance_growth : float
         By what part variances grow for each (m/s^2)^2 of acceleration of a tread: a
         robot that speeds up in a turn slips by more than the gains say.
+    fastest_m_s : float
+        Largest speed of a tread in the runs identified from: the modes are not valid at speeds far
+        above it. A set that does not state it has no limit.
     """
 
     names: tuple[str, ...]
@@ -60,10 +66,10 @@ class TractionModes:
     process_variance: FloatArray
     measurement_variance: FloatArray
     variance_growth: float = 0.0
+    fastest_m_s: float = np.inf
 
     kind = "traction"
     errors_last_s = 0.0
-    fastest_m_s = np.inf
     state_angles: tuple[int, ...] = (2,)
 
     @property
@@ -78,7 +84,14 @@ class TractionModes:
 
     def signals(self, run: Run) -> Signals:
         """What of a run the filters use."""
-        return pose_signals(run)
+        signals = pose_signals(run)
+        gaps_s = with_faster_spans(
+            signals.gaps_s, signals.stamps_s, signals.tread_speeds_m_s, self.fastest_m_s
+        )
+        # after a gap that no pose follows nothing says where the robot is: it lasts to the end
+        last_pose_s = signals.stamps_s[np.isfinite(signals.measured[:, :3]).all(axis=1)][-1]
+        gaps_s[gaps_s[:, 1] > last_pose_s, 1] = np.inf
+        return replace(signals, gaps_s=gaps_s)
 
     def roughness(self, signals: Signals) -> FloatArray:
         """By what part (N,) variances are larger from each stamp to the next."""
@@ -125,6 +138,24 @@ class TractionModes:
             state_angles=self.state_angles,
             measurement_angles=self.state_angles,
         )
+
+    def turn_gains(self) -> FloatArray:
+        """Yaw rate (M, T) per difference of the tread speeds in the turns of TURNS [rad/m]."""
+        twists = np.stack([twists_of(of, TURNS, self.track_width) for of in self.gains])
+        return np.asarray(twists[..., 2] / np.diff(TURNS)[:, 0])
+
+    def yaw_rates_rad_s(self, stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> FloatArray:
+        """Yaw rates (N, M) of each mode, which follow the treads late and are not corrected."""
+        modes = zip(self.gains, self.lag_s.tolist(), strict=True)
+        columns = [
+            lagged(twists_of(of, tread_speeds_m_s, self.track_width)[:, 2], stamps_s, lag_s)
+            for of, lag_s in modes
+        ]
+        return np.column_stack(columns)
+
+    def yaw_rate_variances(self) -> FloatArray:
+        """Variance (M,) of a measured yaw rate [rad^2/s^2]."""
+        return np.full(len(self.names), self.measurement_variance[3])
 
     def _moved(self, x: FloatArray, u: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
         """Displacements (M, 3) of a step, and the yaw rates (M,) after it."""

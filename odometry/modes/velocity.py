@@ -15,6 +15,7 @@ from odometry.modes.bank_inputs import (
     Signals,
     velocity_signals,
 )
+from odometry.modes.response import SLOWEST_HZ, lagged
 from odometry.run import Run
 
 STEP_RESOLUTION_S = 1e-6
@@ -122,6 +123,21 @@ class VelocityModes:
     def steady_yaw_rates(self, tread_speeds_m_s: FloatArray) -> FloatArray:
         """Yaw rates (N, M) of tread speeds (N, 2), once all has settled [rad/s]."""
         return np.asarray(tread_speeds_m_s @ self.steady_gains()[:, 1].T)
+
+    def turn_gains(self) -> FloatArray:
+        """Yaw rate (M, 1) per difference of the tread speeds, once all has settled [rad/m]."""
+        return np.asarray(self.steady_gains()[:, 1] @ [[-0.5], [0.5]])
+
+    def yaw_rates_rad_s(self, stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> FloatArray:
+        """Yaw rates (N, M) of each mode, which follow the treads late and are not corrected."""
+        steady = self.steady_yaw_rates(tread_speeds_m_s)
+        lags_s = 1 / np.maximum(-self.A[:, 1, 1], SLOWEST_HZ)
+        columns = zip(steady.T, lags_s.tolist(), strict=True)
+        return np.column_stack([lagged(column, stamps_s, lag_s) for column, lag_s in columns])
+
+    def yaw_rate_variances(self) -> FloatArray:
+        """Variance (M,) of a measured yaw rate [rad^2/s^2]."""
+        return self.measurement_variance[:, 1]
 
 
 @lru_cache(maxsize=256)

@@ -12,7 +12,8 @@ from odometry.modes.files import write_modes
 from odometry.modes.followed import followed
 from odometry.modes.mode_set import NONE_OF_THESE
 from odometry.modes.track import follow_modes
-from tests.odometry.modes.mode_examples import run_of, velocity_set
+from odometry.modes.traction import LEFT_TURN
+from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
 
 SIZE = 2500  # 50 s at 50 Hz
 AFTER = round(WINDOW_S / 0.02)
@@ -50,6 +51,14 @@ def test_a_change_from_one_mode_to_another_is_between_none(change, after):
     assert not of_turns(turns).holds.any()
 
 
+def test_terrains_that_last_for_some_seconds_are_taken_less_often_for_one_between():
+    turns = np.where(np.arange(SIZE) // 300 % 2 == 0, 0.5, 0.8)  # 6 s of each
+    often = of_traction(turns, traction_set((0.5, 0.8)).modes).holds.mean()
+    rarely = of_traction(turns, traction_set((0.5, 0.8)).modes, stay_s=4.0).holds.mean()
+    assert rarely < often / 2
+    assert of_traction(0.65, traction_set((0.5, 0.8)).modes, stay_s=4.0).holds[AFTER:].mean() > 0.95
+
+
 def test_a_bias_that_is_believed_is_taken_out():
     run_off = of_turns(1.0, biases=0.002)
     assert not run_off.holds.any()
@@ -57,6 +66,23 @@ def test_a_bias_that_is_believed_is_taken_out():
 
 def test_one_mode_has_no_neighbour():
     assert of_turns(1.0, modes=(1.0,)) is None
+
+
+def of_traction(turn, modes, **settings):
+    run = run_of(turn, track_width=0.5, size=SIZE)
+    return between_modes(modes.signals(run), modes, np.zeros(SIZE), 1.0, **settings)
+
+
+@pytest.mark.parametrize(("turn", "between"), [(0.5, False), (0.65, True), (0.8, False)])
+def test_traction_modes_have_turns_between_them_too(turn, between):
+    found = of_traction(turn, traction_set((0.5, 0.8)).modes)
+    assert found.holds[AFTER:].mean() == pytest.approx(float(between), abs=0.05)
+
+
+def test_wheels_that_turn_more_to_one_side_and_less_to_the_other_are_next_to_none():
+    modes = traction_set((0.5, 0.8)).modes
+    modes.gains[1, LEFT_TURN, 2, 3] = -2.0  # what makes wide turns differ from those on the spot
+    assert of_traction(0.65, modes) is None
 
 
 def test_the_answer_between_two_modes_is_none_of_these():

@@ -46,6 +46,7 @@ def cases():
         ({"travel": travel}, UNDETERMINED, "positions went 0.93 times as far", "check the size"),
         ({"turns_are_off": turns}, UNDETERMINED, "turns by more or by less", "identify a mode"),
         ({"blocked": turns}, UNDETERMINED, "the robot does not turn between", "look whether"),
+        ({"contradicted": turns}, UNDETERMINED, "the motion contradicted the", "identify a mode"),
         ({"headings_disagree": turns}, UNDETERMINED, "headings turn apart by", "check the gyro"),
         ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),
         ({"gyroscope": open_}, UNDETERMINED, "a gyroscope bias of 0.000 rad/s", "let the robot r"),

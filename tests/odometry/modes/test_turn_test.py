@@ -9,7 +9,14 @@ from odometry.modes.answers import named_modes
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track_checks import LEAST_RAD_S, WINDOWS_S, turn_sums, turns_are_off
+from odometry.modes.track_checks import (
+    LEAST_RAD_S,
+    WINDOWS_S,
+    contradicted_lately,
+    turn_sums,
+    turns_are_off,
+)
+from odometry.windows.spans import within
 from tests.odometry.modes.mode_examples import track
 
 STEP_S, SIZE = 0.02, 1500
@@ -92,3 +99,30 @@ def test_a_rest_does_not_take_back_what_turns_contradicted():
 def test_a_mode_that_turns_contradict_is_not_named():
     known = replace(track(["a", "a"], ["a"] * 2), turns_are_off=np.array([False, True]))
     assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]
+
+
+def contradicted_for_two_seconds(leading, begin_s=10.0):
+    """Of two modes; each one that leads between 10 and 12 s is far off."""
+    both = np.random.default_rng(8).normal(size=(SIZE, 2, 1))
+    both[within(STAMPS_S, np.array([[begin_s, begin_s + 2.0]]))] += 2.0
+    return Innovations(both, leading, STAMPS_S, 1.0)
+
+
+def test_a_mode_that_was_contradicted_is_not_named_again_at_once():
+    found = contradicted_lately(contradicted_for_two_seconds(np.zeros(SIZE, dtype=int)))
+    ends_s = STAMPS_S[found][-1]
+    assert not found[STAMPS_S < 10.0].any()
+    assert 12.0 + 6.0 - 1.0 < ends_s - ModesConfig.turn_holds_s < 12.0 + 6.0
+
+
+def test_another_mode_than_the_contradicted_one_may_be_named():
+    leading = (STAMPS_S >= 19.0).astype(int)  # six seconds say nothing against it any more
+    found = contradicted_lately(contradicted_for_two_seconds(leading))
+    assert found[STAMPS_S < 19.0][-1]
+    assert not found[STAMPS_S >= 19.0].any()
+
+
+def test_rest_takes_back_no_contradiction():
+    innovations = contradicted_for_two_seconds(np.zeros(SIZE, dtype=int))
+    innovations.normalised[STAMPS_S >= 12.0] = np.nan
+    assert contradicted_lately(innovations)[-1]
