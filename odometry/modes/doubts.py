@@ -11,6 +11,7 @@ from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported
+MOST_SCATTER = 2.0  # times that of identification: other faults of poses and terrains reach 1.5
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,17 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 f"{round(100 * _share(followed, off))} % of the time",
                 "identify a mode for this terrain, load or set of wheels, and check poses, "
                 "gyroscope and both treads",
+                _share(followed, off),
+            )
+        )
+    if track.scatter is not None and (track.scatter > MOST_SCATTER).any():
+        off = track.scatter > MOST_SCATTER
+        found.append(
+            Doubt(
+                f"the poses scatter {np.median(track.scatter[off]):.1f} times as far as in the "
+                f"runs of identification {_when(followed, off)}",
+                "identify the modes from runs with poses as noisy as these, or take velocity "
+                "modes, which are recognised by the gyroscope",
                 _share(followed, off),
             )
         )

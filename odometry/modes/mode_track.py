@@ -45,6 +45,8 @@ class ModeTrack:
         Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
     contradicted : (N,) or None
         Where the most probable mode was contradicted not long ago; without it nowhere.
+    scatter : (N,) or None
+        How many times as far poses scatter as in the runs of identification; NaN: undetermined.
     felt : (N, M) or None
         Probability of each mode by feel alone; None without a model of feel.
     blocked : (N,) or None
@@ -77,6 +79,7 @@ class ModeTrack:
     between: BetweenModes | None = None
     headings_disagree: BoolArray | None = None
     contradicted: BoolArray | None = None
+    scatter: FloatArray | None = None
     felt: FloatArray | None = None
     blocked: BoolArray | None = None
     config: ModesConfig = field(default_factory=ModesConfig)

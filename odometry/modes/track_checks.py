@@ -14,6 +14,7 @@ from odometry.modes.innovation_test import (
 )
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
+from odometry.modes.pose_scatter import pose_scatter
 from odometry.modes.response import BLOCK_S
 from odometry.modes.travel_check import TravelCheck, travel_check
 from odometry.modes.turn_agreement import turns_disagree
@@ -38,18 +39,19 @@ def contradictions(
     BetweenModes | None,
     BoolArray | None,
     BoolArray | None,
+    FloatArray | None,
 ]:
     """Equal modes, turns that contradict, travel, turns between two modes, headings at odds.
 
     Of modes that hear poses themselves turns between two alone, and, last, where one was
-    contradicted lately.
+    contradicted lately and how far poses scatter.
     """
     modes = mode_set.modes
     believed = biases_rad_s, left.independent, config
     if not isinstance(modes, VelocityModes):
         between = between_modes(signals, modes, *believed, stay_s=STAY_S)
         lately = contradicted_lately(left, config)
-        return None, None, None, between, None, lately
+        return None, None, None, between, None, lately, pose_scatter(left)
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
     alike = similar_modes(signals, modes, left.leading, config)
@@ -57,7 +59,7 @@ def contradictions(
     off = turns_are_off(left, before, config)
     travel = travel_check(signals, modes, config)
     disagree = turns_disagree(signals, modes, left.leading, biases_rad_s, config)
-    return alike, off, travel, between, disagree, None
+    return alike, off, travel, between, disagree, None, None
 
 
 def turns_are_off(

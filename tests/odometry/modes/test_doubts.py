@@ -70,6 +70,13 @@ def test_a_doubt_is_an_answer_a_reason_and_a_remedy(fields, answer, reason, reme
     assert said["share"] == one.share
 
 
+def test_poses_that_scatter_are_said_whatever_is_named():
+    found = followed_with(scatter=late(4.2, before=1.0))
+    (one,) = doubts(found)
+    assert "scatter 4.2 times as far as in the runs of identification" in one.reason
+    assert not doubts(followed_with(scatter=late(1.5, before=np.nan)))
+
+
 def test_what_holds_for_a_moment_is_not_said():
     scale = np.full(SIZE, np.nan)
     scale[FROM] = 1.2
