@@ -29,7 +29,16 @@ from odometry.table import Table
 
 BETWEEN_S = 1.0  # of two runs joined
 SURE = ModesConfig().sure
-TESTS = ("fit", "gyroscope", "alike", "turns_are_off", "travel", "between", "headings_disagree")
+TESTS = (
+    "fit",
+    "gyroscope",
+    "alike",
+    "turns_are_off",
+    "travel",
+    "between",
+    "headings_disagree",
+    "contradicted",
+)
 KINDS: Mapping[str, Mapping[str, bool]] = {
     "model and noise of each ground": {},
     "a model of each ground, one noise": {"common_noise": True},

@@ -126,3 +126,9 @@ def test_rest_takes_back_no_contradiction():
     innovations = contradicted_for_two_seconds(np.zeros(SIZE, dtype=int))
     innovations.normalised[STAMPS_S >= 12.0] = np.nan
     assert contradicted_lately(innovations)[-1]
+
+
+def test_a_change_of_the_leading_mode_is_no_contradiction_of_the_new_one():
+    """The one before it was far off for two seconds, then the other one leads and fits."""
+    leading = (STAMPS_S >= 12.0).astype(int)
+    assert not contradicted_lately(contradicted_for_two_seconds(leading))[STAMPS_S >= 12.0].any()
