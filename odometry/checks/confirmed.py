@@ -3,23 +3,32 @@
 from collections.abc import Callable, Iterable, Sequence
 
 from odometry.checks.catalogue import CATALOGUE
-from odometry.checks.disagreement import lasting_disagreements, scales_apart
+from odometry.checks.disagreement import against_slip, lasting_disagreements, scales_apart
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
+from odometry.checks.strange_parts import strange_part
 from odometry.checks.undo import Mend, between, in_turn
 from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
 LOST = "stuck_encoder"  # its time is left out: what then differs was not of the tread
+SLIP = "slip"  # cannot be undone: what differs must be such as slip explains
+DISAGREE = "sensors_disagree"
+# Of two sensors, and true only where these agree otherwise; nothing undoes them.
+OF_AGREEMENT = frozenset(
+    {SLIP, "slip_in_turns", "track_width", "treads_not_proportional", "position_axes"}
+    | {"smoothed_poses", "treads_unsigned"}
+)
 AROUND_S = 2.0  # of such a moment that is left out
 LEAST_S = 15.0  # of a part between two cuts
 HALF = 0.5  # of the recording, that parts are at least: with more cuts it is compared whole
 MOST_PARTS = 6  # the longest ones are compared
 # Sensors of different times seem to slip, to jump and to be far from the centre; one side of
-# another scale seems to scale the way; treads seem to stand where their scale is another elsewhere.
+# another scale seems to scale the way; treads seem to stand where their scale is another elsewhere;
+# one side that loses samples seems to have another scale.
 TRIED_ALONE = frozenset(
     {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
-    | {"treads_unequal", "tread_scale_changed"}
+    | {"treads_unequal", "tread_scale_changed", "dropped_speeds"}
 )
 
 Found = Callable[[Evidence], list[Finding]]
@@ -48,13 +57,16 @@ def _notes(found: Iterable[Finding]) -> list[Finding]:
     return [finding for finding in found if finding.level is Level.NOTE]
 
 
-def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
+def confirmed(
+    evidence: Evidence, found: Sequence[Finding], seen: Sequence[Finding], find: Found
+) -> list[Finding]:
     """The findings; causes that leave the sensors apart when they are undone are named no more.
 
     All of them are undone together: columns and stamps are mended, the recording is cut at jumps,
     and stretches that other findings name are left out. What stays is compared in absolute terms:
     it is not enough that it is less than before. Where they fail together, one of them may be
-    the only one: a turn that is reversed seems to be late where the drive repeats itself.
+    the only one: a turn that is reversed seems to be late where the drive repeats itself. What was
+    `seen` to disagree beside them must be gone as well.
     """
     warnings = _warnings(found)
     causes = [finding for finding in warnings if finding.mend is not None]
@@ -62,18 +74,25 @@ def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list
     others = [f for f in warnings if f not in causes and f not in jumps]
     spans = tuple(span for finding in others for span in finding.spans_s)
     lost = [finding for finding in others if finding.name == LOST]
+    factors = [finding for finding in others if finding.name in OF_AGREEMENT]
     if not causes and not jumps and not lost:
-        return list(found)
+        slips = [finding for finding in factors if finding.name == SLIP]
+        apart = against_slip(evidence) if slips else []
+        return _unnamed(found, factors, apart) if apart else list(found)
     mends: list[Mend] = [finding.mend for finding in causes if finding.mend is not None]
     cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
     parts = _parts(in_turn(*mends)(evidence.run), cuts, spans)
     left = _left(parts)
-    if cuts and (scales := scales_apart(Evidence(in_turn(*mends)(evidence.run), spans))):
-        left = list(dict.fromkeys([*left, scales]))  # jumps are outliers of it, parts may be short
+    whole = Evidence(in_turn(*mends)(evidence.run), spans)
+    if cuts:  # jumps are outliers of the whole, parts may be short
+        more = scales_apart(whole), strange_part(whole, cuts)
+        left = list(dict.fromkeys([*left, *filter(None, more)]))
+    elif not left and mends and any(finding.name == DISAGREE for finding in seen):
+        left = [finding.seen for finding in find(whole) if finding.name == DISAGREE]
     only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
     if only is not None:
         return [only, *_notes(found)]
-    return _unnamed(found, [*causes, *jumps, *lost], left) if left else list(found)
+    return _unnamed(found, [*causes, *jumps, *lost, *factors], left) if left else list(found)
 
 
 def _warnings(found: Iterable[Finding]) -> list[Finding]:

@@ -37,14 +37,14 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
     turns = next(measured_turns(evidence))
     of, most = turns.motion, ratio_left(factor, TURNS_LIKE)
     across = _uneven(_of_turns(of), turns.target, of.difference_m, of.lasts_s, most=most)
-    if sides := _one_side(evidence):
+    if sides := one_side(evidence):
         return sides
     if along:
         return f"a metre of tread travel moves the robot by {along}"
     return f"a metre by which the treads differ turns the robot by {across}" if across else ""
 
 
-def _one_side(evidence: Evidence) -> str:
+def one_side(evidence: Evidence) -> str:
     """Treads of which one turns the robot more than the other: no scale of both."""
     turn = evidence.gyroscope_by_treads or evidence.pose_turn_by_treads
     if turn is None or not (turn.certain(0) and turn.certain(1)) or turn.explained < HELD:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from odometry.checks.beyond_slip import beyond_slip
 from odometry.checks.carried import carried_along
 from odometry.checks.course_offsets import course_apart, yaw_wanders
 from odometry.checks.evidence import Evidence
@@ -24,6 +25,7 @@ from odometry.checks.yaw_drift import course_drifts
 
 POOR = 0.6  # correlation below which sensors do not measure the same motion
 LEAST_WINDOWS = 15
+OR_TREADS = "; or the columns of the treads are at fault"  # where nothing else goes with them
 SHARP, ALIKE = 0.3, 0.3  # of the sharpest turns, and of those to the other side
 
 
@@ -52,8 +54,15 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         holds_the_mean(evidence),
         scale_drifts(evidence),
         carried_along(evidence),
+        beyond_slip(evidence),
         *treads_unlike(evidence),
     )
+    return [words for words in seen if words]
+
+
+def against_slip(evidence: Evidence) -> list[str]:
+    """By what sensors differ, of what no slip of the treads explains."""
+    seen = scales_apart(evidence), headings_apart(evidence), beyond_slip(evidence)
     return [words for words in seen if words]
 
 
@@ -75,15 +84,15 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
         )
     elif unrelated in (pose, gyroscope) and (flips := turns_flip(evidence)):
         yield disagreement(flips)
-    elif pose is unrelated and gyroscope is unrelated and together:
+    elif pose is unrelated and by_gyroscope and together:
+        slips = "" if beyond_slip(evidence) else ", or the treads slip all the time"
         yield _finding(
             "treads_unrelated",
             f"turns by gyroscope and poses agree (correlation {by_gyroscope.correlation:.2f}), the "
-            "treads' do not"
-            if by_gyroscope
-            else "",
-            "odometry.csv is of another recording or another clock, columns are exchanged "
-            "(v_left and v_right may hold speed and turn rate), or the treads slip all the time",
+            "treads' do not",
+            "The cause cannot be determined: odometry.csv is of another recording or another "
+            "clock, its columns are exchanged (v_left and v_right may hold speed and turn rate) or "
+            f"hold no tread speeds (numbers that wrapped, a rate of them){slips}",
             "Plot the three yaw rates: check --picture",
         )
     elif pose is unrelated and _moves(evidence.pose_turn_by_treads):
@@ -93,8 +102,9 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             f"{evidence.pose_turn_by_treads.correlation:.2f})"
             if evidence.pose_turn_by_treads
             else "",
-            "pose.csv is of another recording or another clock, or its yaw is no heading (the "
-            "course over ground, a component of a quaternion, another axis, noise)",
+            "pose.csv is of another recording or another clock, its rows are out of order, or its "
+            "yaw is no heading (the course over ground, a component of a quaternion, another axis, "
+            f"noise){'' if gyroscope is Sense.AGREES else OR_TREADS}",
             "Plot the three yaw rates: check --picture",
         )
     elif gyroscope is unrelated and _moves(evidence.gyroscope_by_treads) and not together:
@@ -105,7 +115,7 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             + ("treads and poses" if agreed else "the treads"),
             "gyro_z is of another axis (z is not up), another recording or another clock, or it "
             "holds no turn rate (a magnitude, its change, a component along a fixed direction)"
-            + ("" if agreed else "; or the treads slip all the time"),
+            + ("" if agreed else f"{OR_TREADS}, or slip all the time"),
             "State the axes of the sensor in [sensors] imu; check --picture shows the yaw rates",
         )
 

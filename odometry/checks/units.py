@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.carried import carried_along
-from odometry.checks.constancy import uneven_gyroscope, uneven_way
+from odometry.checks.constancy import one_side, uneven_gyroscope, uneven_way
 from odometry.checks.effective_width import (
     ORDINARY_WIDTH,
     PLAUSIBLE_M_S,
@@ -33,6 +33,7 @@ from odometry.checks.unit_tables import (
     HOLDS,
     ORDINARY_FORWARD,
     POSITION_UNITS,
+    RARE,
     SLIPS,
     counts,
     matching,
@@ -147,8 +148,8 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
             return disagreement(carried)
         if uneven := uneven_way(evidence, forward / ORDINARY_FORWARD):
             seen, tight = f"{seen}, by no constant factor: {uneven}", False
-            if forward > 1:
-                return disagreement(seen)
+            if forward > 1 or one_side(evidence):
+                return disagreement(seen)  # slip of one side alone does not explain its turns
     return _unit_or_slip(evidence, seen, forward, tight, width)
 
 
@@ -174,7 +175,11 @@ def _unit_or_slip(
         tread = counts(forward, radius_known)
         tread_fits = True
     if tread is not None and tread_fits and (tight or extreme):
-        counted = extreme and forward * tread.factor < NEARLY * ORDINARY_FORWARD
+        counted = extreme and (
+            forward * tread.factor < NEARLY * ORDINARY_FORWARD
+            or tread.words in RARE
+            or tread.factor == 1 / forward
+        )
         return tread_unit(
             seen, tread, evidence, *([COUNTS] if counted else []), measured=1 / forward
         )
