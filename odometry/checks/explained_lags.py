@@ -1,13 +1,17 @@
 """Lags that are named where other stamps explain what differs, and disagreement elsewhere."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, disagreement
+from odometry.checks.lag import Lag
+from odometry.checks.late_positions import apart_from_yaw
+from odometry.checks.late_stamps import one_side_alone
 from odometry.checks.relation import Relation
-from odometry.checks.timing import timing
+from odometry.checks.timing import found_in, lags_of
 
 OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
 # Shares of the squares not explained, and of the mean difference in the nine tenths of the windows
@@ -19,12 +23,35 @@ DIFFER = 0.02  # share of the turns not explained, below which sensors agree
 
 
 def explained_lags(evidence: Evidence) -> Iterator[Finding]:
-    """The findings of `timing`: turns that differ otherwise seem late by chance."""
-    for finding in timing(evidence):
-        if finding.name not in OF_STAMPS or _is_explained(evidence, finding):
-            yield finding
-        elif any(of is not None and 1 - of.explained > DIFFER for of in _relations(evidence)):
-            yield disagreement(f"{finding.seen}, but with other stamps they differ by as much")
+    """The findings of `timing`: turns that differ otherwise seem late by chance.
+
+    Stamps that are late make both positions and yaw late, and both treads.
+    """
+    lags = lags_of(evidence)
+    found = list(found_in(evidence, lags))
+    apart: str | None = None
+    if not any(finding.name == "clocks_apart" for finding in found):
+        apart = apart_from_yaw(evidence, lags.get(("pose", "treads")))
+    for finding in found:
+        if finding.name != "pose_late":
+            yield from _judged(evidence, finding, lags)
+        elif not apart:
+            alone = "; or those of yaw alone: the positions do not decide" * (apart is None)
+            yield from _judged(evidence, replace(finding, cause=finding.cause + alone), lags)
+    if apart:
+        yield disagreement(apart)
+
+
+def _judged(
+    evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
+) -> Iterator[Finding]:
+    wheels = lags.get(("treads", "gyroscope"))
+    if finding.name == "treads_late" and wheels and (of := one_side_alone(evidence, wheels)):
+        yield disagreement(f"{finding.seen}, but {of}")
+    elif finding.name not in OF_STAMPS or _is_explained(evidence, finding):
+        yield finding
+    elif any(of is not None and 1 - of.explained > DIFFER for of in _relations(evidence)):
+        yield disagreement(f"{finding.seen}, but with other stamps they differ by as much")
 
 
 def _is_explained(evidence: Evidence, finding: Finding) -> bool:

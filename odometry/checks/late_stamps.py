@@ -59,6 +59,15 @@ def commands_or_stamps(evidence: Evidence, early_s: float) -> tuple[str, Mend]:
     return "either", commands if left < left_by_stamps else stamps
 
 
+def one_side_alone(evidence: Evidence, lag: Lag) -> str:
+    """Words where one tread alone, late by twice as much, explains the turns clearly better."""
+    left_by_both = _left(evidence, sooner(TREADS, lag.seconds))
+    for name in TREADS:
+        if _left(evidence, sooner((name,), 2 * lag.seconds)) < CLEARLY * left_by_both:
+            return f"{name} alone explains the turns better with other stamps than both do"
+    return ""
+
+
 def _left(evidence: Evidence, mend: Mend) -> float:
     """Share of the turns that the treads do not explain."""
     mended = Evidence(mend(evidence.run), evidence.left_out_s)

@@ -47,7 +47,8 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
     late = {
         pair: lag
         for pair, lag in lags.items()
-        if _is_late(
+        if not _grows(evidence, lag)
+        and _is_late(
             lag,
             max(
                 OF_PERIOD * pose_period_s(evidence) * ("pose" in pair),
@@ -177,7 +178,11 @@ def _late(
 ) -> Iterator[Finding]:
     by_gyroscope, by_treads = late.get(("pose", "gyroscope")), late.get(("pose", "treads"))
     wheels = late.get(("treads", "gyroscope"))
-    if by_gyroscope and wheels and not by_treads and ("pose", "treads") in lags:
+    others = ("pose", "treads")
+    agree = (wheels and others in lags) or (
+        by_gyroscope and _is_on_time(lags, others, by_gyroscope)
+    )
+    if by_gyroscope and agree and not by_treads:
         yield gyroscope_late(evidence, replace(by_gyroscope, seconds=-by_gyroscope.seconds))
         return
     if by_gyroscope:
