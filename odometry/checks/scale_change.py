@@ -17,6 +17,7 @@ CHANGED = 1.4  # ratio of what a metre moves; in 23 real recordings along and in
 ALIKE = 0.35  # share of that change, as a logarithm, by which the change in turns may differ
 HELD_CHANGE = 0.9  # correlation in each part: on terrain that slips a factor is not constant
 CERTAIN = 8.0  # standard deviations
+AS_WELL = 1.1  # times what two factors of time leave of the way: others explain it as well
 LEAST_SHARE = 0.1  # of the way on each side of the moment
 LEAST_WINDOWS = 15
 
@@ -40,6 +41,9 @@ def scale_change(evidence: Evidence) -> Iterator[Finding]:
     if factor <= 0 or in_turns <= 0 or abs(np.log(factor)) < np.log(CHANGED):
         return
     if abs(np.log(in_turns / factor)) > ALIKE * abs(np.log(factor)):
+        return
+    if directions := _by_direction(evidence, moment_s):
+        yield disagreement(directions)
         return
     at_s, mend = evidence.run_time_s(moment_s), _as_before(moment_s, factor)
     if uneven := uneven_way(Evidence(mend(evidence.run), evidence.left_out_s), factor):
@@ -77,6 +81,22 @@ def _moment_s(start_s: FloatArray, forward_m: FloatArray, travel_m: FloatArray) 
     later = (products[-1] - products[rows]) ** 2 / left
     explained = products[rows] ** 2 / np.maximum(squares[rows], 1e-300) + later
     return float(stamps_s[rows[np.argmax(explained)] + 1])
+
+
+def _by_direction(evidence: Evidence, moment_s: float) -> str:
+    """Words where one factor forwards and one backwards explain the way as well as two of time."""
+    m, forward_m = evidence.motion, evidence.forward_m
+    left = []
+    for first in (m.mean_m > 0, m.end_s <= moment_s):
+        parts = (np.where(rows, m.mean_m, 0.0) for rows in (first, ~first))
+        fit = relation(forward_m, *parts)
+        left.append(np.inf if fit is None else 1 - fit.explained)
+    if left[0] > AS_WELL * left[1]:
+        return ""
+    return (
+        "a metre of tread travel moves the robot by one factor forwards and by another one "
+        f"backwards, or before and after {evidence.run_time_s(moment_s):.0f} s"
+    )
 
 
 def _before_and_after(

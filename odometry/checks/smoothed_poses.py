@@ -13,6 +13,7 @@ GRID_S = 0.05
 SMOOTHED_S = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)  # slip on ice and wind look like the longest
 STRETCH_S = 20.0
 FEWEST, FEWEST_POSES = 3, 15  # stretches, and poses in each
+TURN_S = 0.5  # over which turns of yaw and gyroscope are compared
 SHORTEST_M = 1.0  # of a stretch
 LESS = 0.75  # of the distance from the path of treads and gyroscope, by smoothing that path
 MOST_STRETCHES = 0.9  # have less
@@ -23,7 +24,8 @@ def smoothed_poses(evidence: Evidence) -> Iterator[Finding]:
 
     On each stretch the positions are fitted by that path with free scales, side slip, lever arm
     and place: as it is, and as a moving mean over several times. Positions that were measured fit
-    it best as it is, or nearly so.
+    it best as it is, or nearly so. A filter of poses smooths yaw with them: where yaw turns as
+    sharply as the gyroscope, it is something else (an axis that is late, a drive to and fro).
     """
     pose, used = evidence.run.pose, evidence.poses_used
     if pose is None or used is None or evidence.yaw_rate is None:
@@ -36,6 +38,8 @@ def smoothed_poses(evidence: Evidence) -> Iterator[Finding]:
     best = int(np.argmin(means))
     if best == len(means) - 1 or means[best] > LESS or (shares[best] < 1).mean() < MOST_STRETCHES:
         return
+    if evidence.yaw_measured and not _yaw_is_smooth(evidence, SMOOTHED_S[best]):
+        return
     yield Finding(
         "smoothed_poses",
         Level.WARNING,
@@ -45,6 +49,25 @@ def smoothed_poses(evidence: Evidence) -> Iterator[Finding]:
         "cut corners short, and parameters identified from them are biased",
         "Record poses before they are smoothed, or switch the smoothing of the receiver off",
     )
+
+
+def _yaw_is_smooth(evidence: Evidence, over_s: float) -> bool:
+    """Whether measured turns are nearer to those of the gyroscope when these are smoothed."""
+    pose, used = evidence.run.pose, evidence.poses_used
+    assert pose is not None and used is not None  # noqa: S101, PT018 - checked by the caller
+    stamps_s, yaw = pose.stamps_s[used], pose["yaw"][used]
+    yaw = np.unwrap(np.radians(yaw) if evidence.yaw_in_degrees else yaw)
+    begin_s, end_s = max(stamps_s[0], evidence.stamps_s[0]), evidence.stamps_s[-1]
+    grid_s = np.arange(begin_s, min(stamps_s[-1], end_s), GRID_S)
+    heading = evidence.integrals.gyroscope_rad(grid_s)[None, :]
+    measured, step, margin = np.interp(grid_s, stamps_s, yaw), int(TURN_S / GRID_S), over_s / 2
+    inside = slice(int(margin / GRID_S) + 1, len(grid_s) - int(margin / GRID_S) - 1)
+    plain, smooth = (
+        float(np.nanstd(off[step:] - off[:-step]))
+        for half in (0, int(over_s / GRID_S) // 2)
+        for off in [(measured - _averaged(heading, half)[0])[inside]]
+    )
+    return smooth < plain
 
 
 def _distances(

@@ -7,13 +7,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.motion import Motion, turns_both_ways
 from odometry.checks.relation import relation
 
 # Of 31 real recordings the lower bounds are at most 0.046 (a Husky on deflated tyres), and 0.025 of
 # all but that one.
 MORE = 0.06
+FAR_MORE = 40.0  # %: no robot pulls so much to one side, and no tyre or gear is off by it
 SURE = 3.0  # standard deviations of a lower bound
 STRAIGHT = 0.3  # share of the faster tread by which both differ at most
 MOVING = 0.2  # of the ordinary fastest speed
@@ -49,7 +50,8 @@ class Excess:
 def straight_drives(evidence: Evidence) -> Iterator[Finding]:
     """A note where gyroscope or poses say that straight drives are none by the treads.
 
-    A tread that reads too much and a robot that pulls to one side have the same effect.
+    A tread that reads too much and a robot that pulls to one side have the same effect; far more
+    than either makes has no known cause.
     """
     found = list(_excesses(evidence))
     if (
@@ -62,12 +64,18 @@ def straight_drives(evidence: Evidence) -> Iterator[Finding]:
     side, other = ("left", "right") if more > 0 else ("right", "left")
     percent = 100 * ((1 + abs(more) / 2) / (1 - abs(more) / 2) - 1)
     sigma = 100 * max(one.straight_sigma for one in found)
+    seen = (
+        f"on straight stretches ({min(one.windows for one in found)} windows) the {side} tread "
+        f"reads {percent:.1f} +- {sigma:.1f} % more than the {other} one, by the turns of "
+        f"{' and '.join(one.of for one in found)}"
+    )
+    if percent > FAR_MORE:
+        yield disagreement(seen)
+        return
     yield Finding(
         "straight_drives",
         Level.NOTE,
-        f"on straight stretches ({min(one.windows for one in found)} windows) the {side} tread "
-        f"reads {percent:.1f} +- {sigma:.1f} % more than the {other} one, by the turns of "
-        f"{' and '.join(one.of for one in found)}",
+        seen,
         "The treads have different scales (wheel size, ticks per turn, gear, a tyre's pressure), "
         "or the robot itself pulls to one side (its load, its tracks, a slope across its way): "
         "both are possible",

@@ -1,15 +1,20 @@
 """Single samples of the tread speeds that are none: outliers, zeros and placeholders."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
 from odometry.checks.outliers import spikes
 from odometry.checks.treads import step_of
+from odometry.checks.undo import TREADS, changed, in_turn
+from odometry.windows.spans import runs_of
 
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
+# Share of the speeds in motion that are slower than those beside zeros: of lost messages a half.
+FEW, SLOWEST = 20, 0.15
 STOP_S = 0.3  # no robot stops and is at full speed again within
 STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 LEAST_SAME, SAME = 8, 0.5  # rows of one value, their share of all that are alone and of that value
@@ -48,19 +53,19 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _dropped(evidence: Evidence) -> Iterator[Finding]:
-    """Single zeros amid motion."""
-    counts, spans = {}, []
-    for name in ("v_left", "v_right"):
-        values = evidence.run.odometry[name]
-        least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
-        zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
-        zero &= np.abs(values[2:]) > least_m_s
-        zero &= np.sign(values[:-2]) == np.sign(values[2:])
-        zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
-        counts[name] = int(zero.sum())
-        spans += [evidence.run_time_s(s) for s in evidence.stamps_s[1:-1][zero]]
+    """Single zeros amid motion; where only the slowest speeds are lost, no message was."""
+    counts, spans, shares, mends = {}, [], [], []
+    for name in TREADS:
+        zero, least_m_s = _zeros(evidence, name)
+        before = np.abs(evidence.run.odometry[name][zero - 1])
+        moving = np.abs(evidence.speeds_m_s[:, TREADS.index(name)])
+        moving = np.sort(moving[moving > least_m_s])
+        shares += (np.searchsorted(moving, before) / max(len(moving), 1)).tolist()
+        counts[name] = len(zero)
+        spans += [evidence.run_time_s(s) for s in evidence.stamps_s[zero]]
+        mends.append(changed("odometry", name, _held_in(_short_zeros(evidence, name))))
     total = sum(counts.values())
-    if total:
+    if total and not (total > FEW and np.median(shares) < SLOWEST):
         share = total / (2 * len(evidence.stamps_s))
         yield Finding(
             "dropped_speeds",
@@ -71,7 +76,40 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
             "order, or small speeds read too large beside a tread that stands",
             "Remove these rows: the speed before them holds meanwhile",
             tuple((span, span) for span in sorted(spans)),
+            mend=in_turn(*mends),
         )
+
+
+def _zeros(evidence: Evidence, name: str) -> tuple[IntArray, float]:
+    """Rows in which a tread is zero alone between two speeds of one sign, and their least size."""
+    values = evidence.run.odometry[name]
+    least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
+    zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
+    zero &= np.abs(values[2:]) > least_m_s
+    zero &= np.sign(values[:-2]) == np.sign(values[2:])
+    zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
+    return np.flatnonzero(zero) + 1, least_m_s
+
+
+def _short_zeros(evidence: Evidence, name: str) -> IntArray:
+    """First rows, and rows after the last ones (K, 2), of zeros that are shorter than a stop."""
+    values, stamps_s = evidence.run.odometry[name], evidence.stamps_s
+    runs = runs_of(np.abs(values) < 1e-9)
+    runs = runs[(runs[:, 0] > 0) & (runs[:, 1] < len(values))]
+    short = stamps_s[runs[:, 1]] - stamps_s[runs[:, 0] - 1] < STOP_S
+    return np.asarray(runs[short])
+
+
+def _held_in(runs: IntArray) -> Callable[[FloatArray], FloatArray]:
+    """The value before each of the rows (K, 2) in place of all of them."""
+
+    def held(values: FloatArray) -> FloatArray:
+        values = values.copy()
+        for first, end in runs:
+            values[first:end] = values[first - 1]
+        return values
+
+    return held
 
 
 def _placeholders(evidence: Evidence) -> Iterator[Finding]:

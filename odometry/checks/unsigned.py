@@ -17,6 +17,9 @@ NARROWEST, WIDEST = 0.8, 4.0  # effective width in track widths
 OF_ONE_WIDTH = 0.25  # difference of a spin from the usual one, which starts and stops leave
 MOST = 0.6  # of the turns with equal speeds
 BACKWARD = 0.5  # of the way of the treads
+SILENT = (
+    0.5  # of the windows backwards, where treads read nothing: these have lost more than a sign
+)
 FORWARD_TOO = 0.1  # share of the windows; else the yaw is off by half a turn
 
 
@@ -74,7 +77,9 @@ def _backwards(evidence: Evidence) -> int:
     ahead = moving & (forward_m > BACKWARD * m.mean_m)
     behind = moving & (forward_m < -BACKWARD * m.mean_m)
     enough = ahead.sum() > FORWARD_TOO * moving.sum()
-    return int(behind.sum()) if enough else 0
+    silent = (m.mean_m < MOVING * evidence.fastest_m_s * m.lasts_s) & np.isfinite(forward_m)
+    silent &= forward_m < -MOVING * evidence.fastest_m_s * m.lasts_s
+    return int(behind.sum()) if enough and silent.sum() < SILENT * behind.sum() else 0
 
 
 def _moves(evidence: Evidence, motion: Motion) -> BoolArray:
