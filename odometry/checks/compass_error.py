@@ -23,6 +23,7 @@ OCTANTS = 5  # of the compass, in which the robot was: else a bend is a drift
 ROUNDS = 20
 LEAST_WINDOWS = 30
 STRETCHED = 1.2  # ratio of scales; recordings with good poses have up to 1.1
+OFF_AXIS = 20.0  # degrees from an axis of the frame, beyond which its axes have no scale each
 HALF = 0.6  # of the stretch, that each half of the recording has
 SHARP = 0.3  # turn in a window [rad] from which its distance says little
 TIGHT = 0.9  # correlation
@@ -115,13 +116,17 @@ def _stretched(evidence: Evidence) -> Iterator[Finding]:
     by_yaw = _ratio_by_yaw(evidence, along_rad, sharp)
     if by_yaw is not None and by_yaw < 1 + HALF * (ratio - 1):
         return
+    off_axis = abs((np.degrees(along_rad) + 45) % 90 - 45) > OFF_AXIS
+    turned = (
+        ", before the frame was turned; or its axes are not at right angles" if off_axis else ""
+    )
     yield Finding(
         "positions_stretched",
         Level.WARNING,
         f"the robot moves {ratio:.2f} times as far for each metre of tread travel where it drives "
         f"along {np.degrees(along_rad):.0f} degrees of the frame of pose.csv as across it",
         "Positions are stretched along one axis: longitude was taken for as long as latitude "
-        "(without the cosine of the latitude), or x and y have different scales",
+        f"(without the cosine of the latitude), or x and y have different scales{turned}",
         "Convert positions by a projection (UTM, east and north in metres)",
         mend=_shortened(along_rad, ratio),
     )

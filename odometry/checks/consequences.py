@@ -44,6 +44,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
         | {"gyroscope_bias"}
     ),
+    "coarse_positions": frozenset({"repeated_poses", "noisy_positions"}),
     "noisy_positions": frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip"})
     | YAW
     | {"yaw_jumps", "far_sensor", "pose_outliers"},
@@ -51,13 +52,14 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | POSES
     | {"pose_mirrored", "gyroscope_reversed", "treads_or_gyroscope_reversed"}
     | {"treads_unequal", "tread_left_reversed", "treads_swapped", "treads_both_reversed"}
-    | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"},
+    | {"far_sensor", "tread_right_reversed", "treads_unrelated", "yaw_backwards"}
+    | {"turn_blocked"},
     "treads_equal": TREADS
     | POSES
     | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"}
     | {"treads_or_gyroscope_reversed", "treads_swapped", "gyroscope_reversed", "pose_mirrored"}
     | {"gyroscope_unrelated", "poses_unrelated", "treads_late", "tread_offset", "gyroscope_unit"}
-    | {"yaw_reversed", "turns_at_rest"},
+    | {"yaw_reversed", "turns_at_rest", "one_motion"},
     "treads_unsigned": TREADS
     | POSES
     | YAW
@@ -67,13 +69,14 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "tread_scale_changed": TREADS
     | POSES
     | {"treads_not_proportional", "far_sensor", "treads_unequal", "slip_episodes"},
-    "treads_unequal": frozenset({"pose_jumps"}),
+    "treads_unequal": frozenset({"pose_jumps", "turn_blocked"}),
     "track_width": frozenset({"robot_size"}),  # turns say how wide it is
     "treads_are_counters": TREADS
     | POSES
     | YAW
     | {"treads_unrelated", "absurd_speed", "tread_left_reversed", "tread_right_reversed"}
-    | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"},
+    | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"}
+    | {"one_motion"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
     "uneven_stamps": frozenset({"odometry_gap"}),
     "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
@@ -86,7 +89,16 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "placeholder_speeds": frozenset({"treads_not_proportional", "absurd_speed", "dropped_speeds"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
     "treads_still": TREADS | POSES,
-    "treads_unrelated": TREADS | YAW | {"pose_late", "treads_late", "clocks_apart"},
+    "treads_unrelated": TREADS
+    | YAW
+    | {
+        "pose_late",
+        "treads_late",
+        "clocks_apart",
+        "turn_blocked",
+        "dropped_speeds",
+        "absurd_speed",
+    },
     "poses_unrelated": (POSES - {"clocks_apart"})
     | (YAW - {"yaw_unrelated"})
     | {"position_unit", "pose_mirrored", "positions_mirrored"},

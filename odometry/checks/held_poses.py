@@ -8,9 +8,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.windows.spans import constant_spans, runs_of
+from odometry.windows.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
+HALF = 0.5  # share of the held positions, from which their yaw is no held one
 FROZEN_M = 5.0  # that the robot drives meanwhile by its treads, however slowly
 SHORT, MOVING = 0.25, 0.2  # of the usual period, and of the ordinary fastest tread speed
 BURSTS, LEAST_BURSTS = 0.05, 20  # share of the poses in motion, and their number
@@ -55,11 +56,22 @@ def frozen_poses(evidence: Evidence, track: PoseTrack) -> Iterator[Finding]:
         f"poses repeat the same position for {lasts_s:.1f} s in {counted(len(spans), 'place')} "
         f"(first at {evidence.run_time_s(spans[0, 0]):.1f} s) while the treads travel "
         f"{moved_m.sum():.2f} m",
-        "Poses are frozen: the reference was lost and its last value went on; or the robot was "
-        "stuck while its treads turned",
+        "Positions are held while yaw goes on: their receiver was lost, or they end at a border"
+        if _yaw_goes_on(evidence, spans)
+        else "Poses are frozen: the reference was lost and its last value went on; or the robot "
+        "was stuck while its treads turned",
         "Leave these poses empty",
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans),
     )
+
+
+def _yaw_goes_on(evidence: Evidence, spans_s: FloatArray) -> bool:
+    """Whether the yaw of the poses changes from row to row in most of the times (K, 2)."""
+    pose = evidence.run.pose
+    if pose is None or not evidence.yaw_measured:
+        return False
+    inside = within(pose.stamps_s, spans_s)
+    return bool(np.mean(np.diff(pose["yaw"][inside]) != 0) > HALF)
 
 
 def pose_bursts(evidence: Evidence, track: PoseTrack) -> Iterator[Finding]:

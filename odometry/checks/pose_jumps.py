@@ -140,7 +140,8 @@ def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Find
         Level.NOTE,
         f"the treads drive on while the poses hardly move ({counted(len(at_s), 'time')}, first by "
         f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
-        "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment",
+        "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment, or "
+        "the treads read too much there",
         "Decide by what the robot drove on; cut with --from and --to",
         moments(evidence, at_s),
     )

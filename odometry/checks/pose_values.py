@@ -110,7 +110,7 @@ def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
             "coarse_positions",
             f"positions come in steps of {step_m:.3g} m",
             "Positions are rounded: single precision (float32) of large coordinates, or too few "
-            "digits in the log",
+            "digits in the log; or they are drawn to the cells or the lines of a map",
             "Write positions in double precision, relative to the start",
         )
 
