@@ -1,0 +1,69 @@
+"""Real recordings, altered: a cause that another sensor contradicts is not named."""
+
+import numpy as np
+import pytest
+
+from odometry.checks.late_stamps import followed
+from odometry.checks.recording import check_recording
+from odometry.run import Run
+from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
+from tests.odometry.checks.test_causes_that_contradict import UNKNOWN
+from tests.odometry.checks.test_confirmed_causes import warnings
+
+GRASS, BENDS = "warthog_grass_20240808_1556", "warthog_grass_20240729_1446"
+
+
+@pytest.fixture
+def recording(shared_data):
+    return lambda name: Run.read(shared_data / "motion" / name)
+
+
+def names(run):
+    return [finding.name for finding in check_recording(run).findings]
+
+
+def test_one_axis_in_feet_is_no_far_sensor(recording):
+    assert warnings(positions(recording(GRASS), lambda x, y: (x / 0.3048, y))) == UNKNOWN
+
+
+def test_positions_that_end_at_a_border_are_no_vertical_axis(recording):
+    def ended(values):
+        return np.clip(values, *np.quantile(values, [0.2, 0.8]))
+
+    run = positions(recording(GRASS), lambda x, y: (ended(x), ended(y)))
+    assert warnings(run) == ["frozen_poses"]
+
+
+def test_a_gyroscope_behind_a_filter_is_not_early_poses(recording):
+    """By the treads, poses are on time."""
+    run = recording("husky_2023_s00")
+    slow = followed(0.9)(put(run, "odometry", v_left=run.odometry["gyro_z"]))
+    assert warnings(gyroscope(run, lambda _: slow.odometry["v_left"])) == ["gyroscope_late"]
+
+
+def test_a_column_that_holds_the_sum_is_no_robot_that_pulls(recording):
+    run = treads(recording(BENDS), lambda left, right: (left, left + right))
+    assert names(run) == UNKNOWN
+
+
+def test_slip_is_not_named_beside_a_yaw_that_is_folded(recording):
+    run = yaw(recording("husky_2023_s02"), lambda angle: np.mod(angle, np.pi))
+    assert names(run) == UNKNOWN
+
+
+def test_where_gyroscope_and_poses_agree_the_treads_are_at_fault(recording):
+    run = recording("warthog_asphalt_20240920_0813")
+    changes = (np.gradient(run.odometry[n], run.odometry["t"]) for n in ("v_left", "v_right"))
+    (found,) = check_recording(treads(run, lambda *_: changes)).findings
+    assert found.name == "treads_unrelated"
+    assert "cannot be determined" in found.cause
+
+
+def test_twist_that_wrapped_is_beyond_slip(recording):
+    run = recording("husky_tile_20231212_1616_s00")
+    left, right = run.odometry["v_left"], run.odometry["v_right"]
+    half = (right - left) / 2
+    most = np.quantile(np.abs(half), 0.9)
+    wrapped = (half + most) % (2 * most) - most
+    run = treads(run, lambda *_: ((left + right) / 2 - wrapped, (left + right) / 2 + wrapped))
+    assert "beyond what any slip" in check_recording(run).findings[0].seen
