@@ -12,6 +12,7 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.lag import Lag, Rate, lag_of_rates
 from odometry.checks.undo import changed
+from odometry.windows.gaps import odometry_gaps
 
 WIDTH = 1.8  # track widths, as which a robot turns where no gyroscope says more
 LEAST_WIDTH_S = 0.5
@@ -25,6 +26,7 @@ TOGETHER = 0.7  # share of the pieces that have one lag
 # Between positions and yaw; real recordings whose treads hold have at most 0.22 s with four pieces
 # or more, one of three pieces 0.4.
 LEAST_APART_S, MOST_APART_S, LEAST_PIECES = 0.3, 1.5, 4
+MOST_LOST = 0.1  # of the recording: speeds held in gaps of the odometry are of another time
 
 
 def late_positions(evidence: Evidence) -> Iterator[Finding]:
@@ -63,6 +65,9 @@ def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:
     Empty where both are of one time, None where it is not known.
     """
     if of_yaw is None or not evidence.yaw_measured or of_yaw.together < TOGETHER:
+        return None
+    lost_s = float(np.sum(np.diff(odometry_gaps(evidence.run).spans_s)))
+    if lost_s > MOST_LOST * float(np.ptp(evidence.stamps_s)):
         return None
     lag = _speed_lag(evidence, max(MOST_APART_S, abs(of_yaw.seconds) + 2 * LEAST_APART_S))
     if lag is None or lag.together < TOGETHER or lag.pieces < LEAST_PIECES:

@@ -42,7 +42,7 @@ def test_the_time_and_the_new_pitch_are_named(moved, later):
     finding = {one.name: one for one in findings}["camera_moved"]
     at_s = float(re.findall(r"about ([0-9.]+) s", finding.seen)[0])
     assert at_s == pytest.approx(25, abs=3)
-    looks = float(re.findall(r"looks ([0-9.]+) degrees", finding.cause)[0])
+    looks = float(re.findall(r"points ([0-9.]+) degrees", finding.cause)[0])
     stated = float(np.degrees(camera.mount[4]))
     assert abs(looks - stated) == pytest.approx(TURN_DEG, abs=1.0)
     assert ("from about" if later else "until about") in finding.seen
