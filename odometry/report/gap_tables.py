@@ -155,7 +155,7 @@ def worst_grid(result: GapResult) -> Grid:
             rows.append((scene.run.name, number * PART_S, *rms))
     worst = sorted(rows, key=lambda row: -row[3])[:WORST]
     header = ("run", "run time [s]", "before [m]", "after [m]")
-    caption = f"The {len(worst)} stretches of {PART_S:g} s with the largest error after."
+    caption = f"The {len(worst)} stretches of {PART_S:g} s with the largest error after the fit."
     return Grid(
         header,
         [
