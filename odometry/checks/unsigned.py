@@ -17,9 +17,8 @@ NARROWEST, WIDEST = 0.8, 4.0  # effective width in track widths
 OF_ONE_WIDTH = 0.25  # difference of a spin from the usual one, which starts and stops leave
 MOST = 0.6  # of the turns with equal speeds
 BACKWARD = 0.5  # of the way of the treads
-SILENT = (
-    0.5  # of the windows backwards, where treads read nothing: these have lost more than a sign
-)
+# Of the windows backwards, where treads read nothing: these have lost more than a sign.
+SILENT = 0.5
 FORWARD_TOO = 0.1  # share of the windows; else the yaw is off by half a turn
 
 

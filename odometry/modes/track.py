@@ -133,7 +133,7 @@ def follow_signals(
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
         gyroscope_trust(signals, means[:, -1], sigmas[:, -1], open_),
-        *contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
+        **contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
         blocked=within(signals.stamps_s, signals.blocked_s),
         config=config,
     )

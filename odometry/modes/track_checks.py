@@ -1,10 +1,12 @@
 """What contradicts the most probable mode: equal modes, turns and travel."""
 
+from typing import Any
+
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.between_modes import BetweenModes, between_modes
+from odometry.modes.between_modes import between_modes
 from odometry.modes.innovation_test import (
     LONG_CLIP,
     LONG_WINDOW_S,
@@ -16,7 +18,7 @@ from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.pose_scatter import pose_scatter
 from odometry.modes.response import BLOCK_S
-from odometry.modes.travel_check import TravelCheck, travel_check
+from odometry.modes.travel_check import travel_check
 from odometry.modes.turn_agreement import turns_disagree
 from odometry.modes.velocity import VelocityModes
 
@@ -32,34 +34,30 @@ def contradictions(
     left: Innovations,
     biases_rad_s: FloatArray,
     config: ModesConfig,
-) -> tuple[
-    BoolArray | None,
-    BoolArray | None,
-    TravelCheck | None,
-    BetweenModes | None,
-    BoolArray | None,
-    BoolArray | None,
-    FloatArray | None,
-]:
-    """Equal modes, turns that contradict, travel, turns between two modes, headings at odds.
+) -> dict[str, Any]:
+    """Fields of `ModeTrack`: what speaks against the most probable mode, as its filters allow.
 
-    Of modes that hear poses themselves turns between two alone, and, last, where one was
-    contradicted lately and how far poses scatter.
+    Of modes that measure velocities: equal modes, turns, travel, turns between two modes and
+    headings at odds. Of those that measure poses: turns between two modes, where one was
+    contradicted not long ago, and how far poses scatter.
     """
     modes = mode_set.modes
     believed = biases_rad_s, left.independent, config
     if not isinstance(modes, VelocityModes):
-        between = between_modes(signals, modes, *believed, stay_s=STAY_S)
-        lately = contradicted_lately(left, config)
-        return None, None, None, between, None, lately, pose_scatter(left)
+        return {
+            "between": between_modes(signals, modes, *believed, stay_s=STAY_S),
+            "contradicted": contradicted_lately(left, config),
+            "scatter": pose_scatter(left),
+        }
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
-    alike = similar_modes(signals, modes, left.leading, config)
-    between = between_modes(signals, modes, *believed)
-    off = turns_are_off(left, before, config)
-    travel = travel_check(signals, modes, config)
-    disagree = turns_disagree(signals, modes, left.leading, biases_rad_s, config)
-    return alike, off, travel, between, disagree, None, None
+    return {
+        "alike": similar_modes(signals, modes, left.leading, config),
+        "turns_are_off": turns_are_off(left, before, config),
+        "travel": travel_check(signals, modes, config),
+        "between": between_modes(signals, modes, *believed),
+        "headings_disagree": turns_disagree(signals, modes, left.leading, biases_rad_s, config),
+    }
 
 
 def turns_are_off(

@@ -29,7 +29,6 @@ from odometry.gap.prepare.measured import at_fewer_poses
 from odometry.windows.dense import DenseWindows
 
 POSES = 10  # of a window, where smooth functions are chosen
-PROMISING = 2  # of them that are fitted in full at most
 MOST_BURSTS = 2  # effects: each tread may have its own
 
 BY_CHANCE = 0.001  # probability of as many events on one terrain
@@ -91,7 +90,8 @@ def grown(search: Search, found: Explanation) -> Explanation:
     while len(found.steps) < config.most_smooth and search.has_excess(found.fitted):
         taken = {effect.key for effect in found.effects}
         left = [one for one in candidates if one.key not in taken]
-        best = _first_earner(search, found.fitted, _most_promising(coarse, found.fitted, left))
+        promising = _most_promising_first(coarse, found.fitted, left)[: config.promising]
+        best = _first_earner(search, found.fitted, promising)
         if best is None:
             break
         found = found.with_step(best)
@@ -108,13 +108,13 @@ def _first_earner(search: Search, before: Fitted, candidates: Sequence[Residual]
     return None
 
 
-def _most_promising(
+def _most_promising_first(
     coarse: Fitter, before: Fitted, candidates: Sequence[Residual]
 ) -> list[Residual]:
     losses = coarse.linear_losses(before, candidates)
     paid = penalty(1, before) * max(1.0, coarse.spread_of(before))
     costs = losses + paid * np.array([len(one.terms) for one in candidates])
-    return [candidates[place] for place in np.argsort(costs, kind="stable")[:PROMISING]]
+    return [candidates[place] for place in np.argsort(costs, kind="stable")]
 
 
 def last_of_each_run(search: Search, found: Explanation) -> Explanation | None:

@@ -124,8 +124,8 @@ def _nothing_named(result: GapResult, model: str) -> str:
     if result.verdict == "unknown":
         return (
             f"Something is missing in {model} (unknown): neither an effect of the catalogue, nor "
-            "a smooth function of what was recorded, nor a slow course in run time explains it. A "
-            "reference that is noisier than in the calibration looks the same."
+            "a smooth function of what was recorded, nor a slow course in run time surely explains "
+            "it. A reference that is noisier than in the calibration looks the same."
         )
     return _none(result, model)
 
