@@ -172,6 +172,7 @@ def run_odometry(
         second,
         BOTH if name == "camera" and feel is not None else name,
         differing,
+        terrain,
     )
 
 

@@ -18,6 +18,7 @@ from terrain.evaluated import is_used_by_filter
 from terrain.evaluation_notes import advice, filter_table, remarks, verdict
 from terrain.label_confusion import label_confusion_table
 from terrain.new_terrain import contradiction_lines
+from terrain.run_notes import run_notes
 from terrain.run_result import RunResult, TerrainChange
 from terrain.switch import SwitchEvent
 from terrain.switch_delay import switch_delays
@@ -95,6 +96,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "off_at_the_end_m": result.off_at_the_end_m,
         "estimate_has_seen_reference": is_used_by_filter(result.reference_name),
         "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
+        "notes": run_notes(result),
         "withheld": _withheld(result),
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),
         "switches": _switches(result),

@@ -48,7 +48,7 @@ def write_run(result: RunResult, output: OutputFolder, reports: Sequence[CheckRe
     """
     with output.writing() as part:
         write_results(result, part, about_result(output.made, reports))
-        page.write_report(result, part)
+        page.write_report(result, part, reports=reports)
 
 
 ERRORS = (  # of each trajectory in it, and which number of each the tables show

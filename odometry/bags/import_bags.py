@@ -103,7 +103,9 @@ def _check_wheels(
         raise BagError(f"no wheel speed could be read: {'; '.join(losses)}")
     share = speeds.too_fast / (speeds.too_fast + wheels.sink.written)
     if of_places and share > MOST_TOO_FAST:
-        raise BagError(f"{share:.0%} of the wheel speeds are impossible. {speeds.lost()[0]}")
+        raise BagError(
+            f"{100 * share:.0f} % of the wheel speeds are impossible. {speeds.lost()[0]}"
+        )
 
 
 def _robot_from_imu(plan: Plan, survey: Survey) -> FloatArray:

@@ -136,7 +136,7 @@ def horizon_sentence(model: str, errors: Sequence[HorizonErrors], quantity: str)
     return (
         f"{model}, {quantity}, identified over windows of "
         f"{_listed([f'{h:g}' for h in tried], 'or')} m: {'; '.join(parts)} (medians within "
-        f"{AS_GOOD - 1:.0%} count as equal)."
+        f"{100 * (AS_GOOD - 1):.0f} % count as equal)."
     )
 
 

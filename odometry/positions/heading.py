@@ -78,9 +78,9 @@ def yaw_at_positions(carrier: Carrier) -> PositionsYaw:
         raise OdometryError(
             f"{carrier.record.run.folder}: yaw was not measured, and the positions (noise "
             f"{np.sqrt(carrier.position_variance_m2):.2g} m) do not determine it: at "
-            f"{1 - found.share:.0%} of them, headings more than {np.degrees(FAR_RAD):.0f} degrees "
-            "apart agree with them, or none is known well; expected a measured yaw, better "
-            "positions, or longer drives between turns"
+            f"{100 * (1 - found.share):.0f} % of them, headings more than "
+            f"{np.degrees(FAR_RAD):.0f} degrees apart agree with them, or none is known well; "
+            "expected a measured yaw, better positions, or longer drives between turns"
         )
     return found
 
@@ -164,7 +164,7 @@ class FoundHeading:
         by = "by the gyroscope" if self.by_gyroscope else "by the treads alone"
         unknown = 1 - self.estimated_share
         except_for = (
-            f"; at {unknown:.1%} of the positions it cannot be estimated" if unknown else ""
+            f"; at {100 * unknown:.1f} % of the positions it cannot be estimated" if unknown else ""
         )
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "

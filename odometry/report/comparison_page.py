@@ -1,11 +1,14 @@
 """One page and its figures from a comparison."""
 
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
+from odometry.checks.finding import CheckReport
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place
 from odometry.comparison.training_horizons import horizon_sentence
+from odometry.report.before_use import before_use
 from odometry.report.comparison_figures import (
     distribution_picture,
     horizon_picture,
@@ -38,7 +41,9 @@ HOW = (
 )
 
 
-def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Path]:
+def write_comparison_report(
+    comparison: Comparison, out: str | Path, reports: Iterable[CheckReport] = ()
+) -> list[Path]:
     """Write `figures/*.png` and `report.html`.
 
     Parameters
@@ -46,6 +51,8 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
     comparison : Comparison
     out : path
         Folder; made if it is missing.
+    reports : iterable of CheckReport
+        Of the runs: what the check warns of stands first on the page.
 
     Returns
     -------
@@ -55,6 +62,7 @@ def write_comparison_report(comparison: Comparison, out: str | Path) -> list[Pat
     folder = Path(out) / "figures"
     robots = dict.fromkeys(robot for robot, _ in comparison.robots_and_terrains)
     sections = [
+        before_use(reports),
         Section("How to read this", [Paragraph(HOW)]),
         Section("All errors", [error_grid(comparison), *_left_out(comparison)]),
         *(_place(comparison, place, folder) for place in comparison.places),

@@ -1,6 +1,6 @@
 """Pages of terrain by feel: of a run, with its figure over time, and of a model."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,11 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
+from odometry.checks.finding import CheckReport
 from odometry.feel.felt import SILENT
 from odometry.feel.files import sentences
 from odometry.feel.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.modes.mode_set import NONE_OF_THESE
+from odometry.report.before_use import before_use
 from odometry.report.figure import mode_colours, save_figure
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_panels import GREYS, draw_strips, drawn_rows
@@ -86,10 +88,14 @@ HOW = (
 LENGTHS = {"window": "window", "stretch": "stretch of 10 s", "run": "run"}
 
 
-def write_feel_report(felt: Felt, out: Path) -> list[Path]:
-    """Write `figures/feel.png` and `report.html`; the files written are returned."""
+def write_feel_report(felt: Felt, out: Path, reports: Iterable[CheckReport] = ()) -> list[Path]:
+    """Write `figures/feel.png` and `report.html`; the files written are returned.
+
+    `reports` are those of the check of the run: what it warns of stands first on the page.
+    """
     picture = feel_picture(felt, Path(out) / "figures")
     sections = [
+        before_use(reports),
         Section("In short", [Listing(sentences(felt))]),
         Section("Over time", [picture]),
         Section("The model, on runs held out from training", accuracy_blocks(felt.model)),

@@ -1,15 +1,18 @@
 """One page and its figures from the modes of a run, and what is left of each signal."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
+from odometry.checks.finding import CheckReport
 from odometry.modes.detection import confusion
 from odometry.modes.followed import BOUND, Followed
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
+from odometry.report.before_use import before_use
 from odometry.report.figure import save_figure
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.mode_figures import modes_picture, path_picture
@@ -24,8 +27,12 @@ HOW = (
 )
 
 
-def write_modes_report(followed: Followed, out: Path) -> list[Path]:
+def write_modes_report(
+    followed: Followed, out: Path, reports: Iterable[CheckReport] = ()
+) -> list[Path]:
     """Write `figures/modes.png`, `innovations.png`, for traction modes `path.png`, `report.html`.
+
+    `reports` are those of the check of the run: what it warns of stands first on the page.
 
     Returns
     -------
@@ -47,6 +54,7 @@ def write_modes_report(followed: Followed, out: Path) -> list[Path]:
     innovations, path = ([] if one is None else [one] for one in others_drawn.values())
     pictures = [over_time, *innovations, *path]
     sections = [
+        before_use(reports),
         Section("In short", [Listing(short)]),
         Section("Over time", [over_time]),
         Section("How the nearest mode fits", [*innovations, *_misfits(followed)]),

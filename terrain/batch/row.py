@@ -51,7 +51,7 @@ class Row:
     flags : tuple of str
         Names of what misleads: warnings of the check, events of the filter.
     notes : tuple of str
-        The same in sentences, and remarks on the errors.
+        The same in sentences, notes of the run, and remarks on the errors.
     sha256 : str
         Of the run; copies have the same.
     """
@@ -111,7 +111,7 @@ def _row(name: str, folder: str, result: Mapping[str, Any]) -> Row:
         counts={key: len(result[key]) for key in COUNTS},
         robot=(result["robot"]["name"], result["robot"]["track_width"]),
         flags=tuple(dict.fromkeys(flags)),
-        notes=(*notes, *result["remarks"]),
+        notes=(*notes, *(f"{note}." for note in result["notes"]), *result["remarks"]),
     )
 
 

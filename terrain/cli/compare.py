@@ -174,7 +174,7 @@ def compare(
     from odometry.identification.start import SolverConfig
     from odometry.report.comparison_page import write_comparison_report
     from terrain.cli.outputs import about, claim_folder
-    from terrain.cli.recordings import read_runs
+    from terrain.cli.recordings import checks_made, read_runs
 
     config = ComparisonConfig(
         training=windows,
@@ -197,7 +197,7 @@ def compare(
     _require_a_row(comparison)
     with output.writing() as part:
         write_comparison(comparison, part, about(output.made))
-        write_comparison_report(comparison, part)
+        write_comparison_report(comparison, part, checks_made())
     for note in comparison.notes:
         click.echo(f"Note: {note}", err=True)
     for reason in comparison.left_out.values():

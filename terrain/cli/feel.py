@@ -85,12 +85,12 @@ def _one(
     from odometry.feel.follow import follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about
-    from terrain.cli.recordings import read_run
+    from terrain.cli.recordings import checks_made, read_run
 
     felt = follow_feel(read_run(folder, span), model, config)
     with output.writing() as part:
         write_feel(felt, part, about(output.made))
-        write_feel_report(felt, part)
+        write_feel_report(felt, part, checks_made())
     for sentence in sentences(felt):
         click.echo(sentence)
     print_written(output.out)
@@ -110,7 +110,7 @@ def _several(
     from odometry.feel.follow import Felt, follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about, folder_names
-    from terrain.cli.recordings import read_run
+    from terrain.cli.recordings import checks_made, read_run
 
     rows: dict[str, Felt | str] = {}
     with output.writing() as part:
@@ -121,8 +121,8 @@ def _several(
                 rows[name] = str(error)
                 click.echo(f"{name}: failed: {error}")
                 continue
-            write_feel(felt, part / name, about(output.made))
-            write_feel_report(felt, part / name)
+            write_feel(felt, part / name, about(output.made, folder))
+            write_feel_report(felt, part / name, checks_made(folder))
             rows[name] = felt
         write_feel_runs(rows, model.names, part / "runs.csv")
     done = {name: row for name, row in rows.items() if isinstance(row, Felt)}

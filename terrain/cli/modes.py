@@ -108,11 +108,12 @@ def _one(
     from odometry.modes.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about
+    from terrain.cli.recordings import checks_made
 
     result = _followed(folder, mode_set, config, seen=seen, feel=feel, span=span)
     with output.writing() as part:
         write_modes(result, part, about(output.made))
-        write_modes_report(result, part)
+        write_modes_report(result, part, checks_made())
     for title, said in zip(("In force", "How sure", "What to do"), in_short(result), strict=True):
         click.echo(f"{title}: {said}")
     for sentence in sentences(result):
@@ -136,6 +137,7 @@ def _several(
     from odometry.modes.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about, folder_names
+    from terrain.cli.recordings import checks_made
 
     rows: dict[str, Followed | str] = {}
     out = output.out
@@ -148,7 +150,7 @@ def _several(
                 click.echo(f"{name}: failed: {error}")
                 continue
             write_modes(result, part / name, about(output.made, folder))
-            write_modes_report(result, part / name)
+            write_modes_report(result, part / name, checks_made(folder))
             rows[name] = result
             click.echo(f"{name}: {sentences(result)[0]}")
             click.echo(f"  how sure: {in_short(result)[1]}")

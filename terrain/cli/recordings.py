@@ -84,10 +84,10 @@ def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":
     return run
 
 
-def checks_made() -> "list[CheckReport]":
-    """Reports of the runs that the command has read."""
+def checks_made(folder: Path | None = None) -> "list[CheckReport]":
+    """Reports of the runs that the command has read, or of the one in a folder."""
     found: list[CheckReport] = click.get_current_context().meta.get(CHECKS, [])
-    return found
+    return [report for report in found if folder in (None, report.folder)]
 
 
 def with_turns(runs: "Sequence[Run]") -> "list[Run]":

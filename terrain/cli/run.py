@@ -138,14 +138,19 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
     from terrain.believed_images import believed
-    from terrain.cli.hints import hints, learned_advice
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
-    from terrain.cli.results import print_changes, print_errors, print_image_labels, print_written
+    from terrain.cli.results import (
+        learned_advice,
+        print_changes,
+        print_errors,
+        print_image_labels,
+        print_written,
+    )
     from terrain.new_terrain import contradiction_lines
     from terrain.result_table import image_label_counts
     from terrain.results import write_run
-    from terrain.sets_against_poses import sentences, sets_against_poses
+    from terrain.run_notes import event_lines, run_notes
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)
@@ -153,9 +158,10 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     if left_out:
         click.echo(f"Warning: {run_folder}: {left_out}", err=True)
     result = options.replay(recording, show_progress=True)
-    noticed = hints(result, vision=options.wants_images, named=options.terrain)
-    for hint in [*noticed, *sentences(sets_against_poses(result))]:
-        click.echo(f"Note: {hint}", err=True)
+    if options.wants_images and result.watcher is None and recording.images is not None:
+        click.echo("Note: the run has images, but there is no vision without --model", err=True)
+    for note in [*run_notes(result), *event_lines(result)]:
+        click.echo(f"Note: {note}", err=True)
     write_run(result, output, checks_made())
     print_errors({result.run.name: result})
     print_image_labels(image_label_counts(result))

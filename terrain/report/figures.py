@@ -101,7 +101,7 @@ def distribution_picture(lines: ReportLines, folder: Path) -> Picture | None:
         save_figure(folder / "error_per_metre.png", (_WIDTH_IN, height_in), draw),
         f"Boxes of the errors per metre of {', '.join(relative)}.",
         f"Errors over stretches of {horizon_m:g} m of wheel travel, per metre. Boxes: quartiles; "
-        "whiskers: 5 to 95%; diamonds: means.",
+        "whiskers: 5 to 95 %; diamonds: means.",
     )
 
 

@@ -1,8 +1,10 @@
 """One page and its figures from the result of a run."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from odometry.checks.finding import CheckReport
+from odometry.report.before_use import before_use
 from odometry.report.figure import terrain_colours
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from terrain.evaluation_notes import advice
@@ -33,6 +35,7 @@ from terrain.report.tables import (
     uncertainty_grid,
 )
 from terrain.report.words import headline, notes
+from terrain.run_notes import run_notes
 from terrain.run_result import RunResult
 from terrain.sources import SOURCE_WORDS
 from terrain.switch_delay import true_stretches
@@ -49,6 +52,7 @@ def write_report(
     result: RunResult,
     out: str | Path,
     compared_with: Mapping[str, RunResult] | None = None,
+    reports: Iterable[CheckReport] = (),
 ) -> list[Path]:
     """Write `figures/*.png` and `report.html`.
 
@@ -59,6 +63,8 @@ def write_report(
         Folder; made if it is missing.
     compared_with : Mapping of name to RunResult, optional
         Other results of the same run, such as {"without vision": ...}.
+    reports : iterable of CheckReport
+        Of the run: what the check warns of stands first on the page, then `run_notes`.
 
     Returns
     -------
@@ -85,6 +91,7 @@ def write_report(
     lines = ReportLines(result, compared_with or {})
     tints = _tints(result)
     sections = [
+        before_use(reports, run_notes(result)),
         Section("Errors", _errors(lines, folder)),
         Section("Uncertainty of the odometer", _uncertainty(result)),
         Section("What the filter noticed", _some(event_grid(result))),
@@ -175,6 +182,6 @@ def label_table(result: RunResult) -> Grid | None:
         return None
     rows = [(name, *map(str, row)) for name, row in zip(of.true, of.counts.tolist(), strict=True)]
     share = of.right_share
-    right = "" if share is None else f"; {share:.0%} of the labels that are names are right"
+    right = "" if share is None else f"; {100 * share:.0f} % of the labels that are names are right"
     caption = f"Images by their terrain in images.csv (rows) and by label (columns){right}."
     return Grid(("true terrain", *of.labels), rows, caption)

@@ -49,7 +49,7 @@ def draw_region(
     draw_outline(axes, shape, colour)
     name = image_label.label or NO_LABEL
     sure = image_label.confidence if image_label.label != UNKNOWN else np.nan  # of a known terrain
-    percent = f" {sure:.0%}" if np.isfinite(sure) else ""
+    percent = f" {100 * sure:.0f} %" if np.isfinite(sure) else ""
     _write_inside(axes, shape, f"{name}{percent}", 10.0)
 
 
@@ -143,7 +143,7 @@ def plot_confusion(axes: Axes, counts: IntArray, names: Sequence[str], said: Seq
         axes.text(
             column,
             row,
-            f"{share:.0%}\n{count}",
+            f"{100 * share:.0f} %\n{count}",
             ha="center",
             va="center",
             fontsize=9,

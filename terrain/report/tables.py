@@ -112,7 +112,7 @@ def uncertainty_grid(result: RunResult) -> Grid | None:
         return None
     header = ("after [m]", "sigma x [m]", "sigma y [m]", "sigma yaw [°]")
     by_own = ("NEES by own poses",) if own else ()
-    checked = ("NEES", "95% bounds", "covariance is")
+    checked = ("NEES", "95 % bounds", "covariance is")
     return Grid((*header, *by_own, *checked), rows, f"The odometer's covariance: {of.source}.")
 
 

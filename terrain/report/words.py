@@ -137,4 +137,4 @@ def _less(own: float, other: float | None) -> str:
     if not other:
         return "no less"
     share = 1 - own / other
-    return f"{abs(share):.0%} {'less' if share >= 0 else 'more'}"
+    return f"{100 * abs(share):.0f} % {'less' if share >= 0 else 'more'}"

@@ -73,7 +73,7 @@ def test_the_tables_of_json_and_page_hold_the_same_numbers():
     grid = label_table(result)
     assert grid.header == ("true terrain", "ice", "mud", "unknown", "no label")
     assert grid.rows[1] == ("mud", "1", "0", "1", "0")
-    assert "33% of the labels that are names are right" in grid.caption
+    assert "33 % of the labels that are names are right" in grid.caption
 
 
 def test_a_run_that_names_its_images_is_judged(tmp_path, world, classifier):

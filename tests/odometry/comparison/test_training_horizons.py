@@ -97,7 +97,7 @@ def test_the_best_training_horizons_err_at_most_five_percent_more():
     assert horizon_sentence("icr", errors, "rotation") == (
         "icr, rotation, identified over windows of 1, 2 or 5 m: over 0.5 m the error with 1 or 2 m "
         "is the smallest; over 2 m the errors of all are the same; over 5 m the error with 5 m is "
-        "the smallest (medians within 5% count as equal)."
+        "the smallest (medians within 5 % count as equal)."
     )
 
 

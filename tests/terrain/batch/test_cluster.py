@@ -11,7 +11,7 @@ from terrain.batch.job import FAILED, KEPT, REPLAYED, run_job
 from terrain.errors import BatchError
 from tests.terrain.dask_processes import started_scheduler, started_workers
 
-WITHOUT_PAGE = "import terrain.report.page as page; page.write_report = lambda *_: None"
+WITHOUT_PAGE = "import terrain.report.page as page; page.write_report = lambda *_, **__: None"
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def test_all_results_arrive_though_a_worker_is_killed(
 ):
     jobs = [job_of(folder) for folder in sorted(four_runs.iterdir())]
     jobs.append(job_of(four_runs / "absent"))
-    monkeypatch.setattr("terrain.report.page.write_report", lambda *_: None)
+    monkeypatch.setattr("terrain.report.page.write_report", lambda *_, **__: None)
     states = {}
     with started_workers(scheduler, 2, WITHOUT_PAGE) as (first, _):
         for outcome in cluster_outcomes(jobs, scheduler):

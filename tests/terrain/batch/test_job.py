@@ -12,7 +12,7 @@ from terrain.run_options import RunOptions
 
 @pytest.fixture(autouse=True)
 def without_page(monkeypatch):
-    monkeypatch.setattr("terrain.report.page.write_report", lambda *_: None)
+    monkeypatch.setattr("terrain.report.page.write_report", lambda *_, **__: None)
 
 
 @pytest.fixture

@@ -211,7 +211,7 @@ def test_an_interrupt_leaves_what_is_whole_and_goes_on_from_there(here, monkeypa
 def test_a_killed_batch_goes_on_to_the_same_bytes(here):
     """SIGKILL of the batch at some moment: what was whole stays, and nothing is done twice."""
     program = (
-        "import terrain.report.page; terrain.report.page.write_report = lambda *_: None\n"
+        "import terrain.report.page; terrain.report.page.write_report = lambda *_, **__: None\n"
         "from terrain.cli.main import main; main()"
     )
     words = [sys.executable, "-c", program, "batch", *NAMES, "--processes", "1"]

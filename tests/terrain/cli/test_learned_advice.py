@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from odometry.estimation.filter_event import FilterEvent
-from terrain.cli.hints import learned_advice
+from terrain.cli.results import learned_advice
 
 JUMP = FilterEvent("reinitialised", 1.0, 1.0, "it started anew")
 

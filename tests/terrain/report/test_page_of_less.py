@@ -5,8 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
+from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
+from odometry.installed import shipped_data
+from odometry.parameters import read_parameters
+from odometry.report.before_use import TITLE
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.main_job import run_odometry
@@ -29,6 +33,24 @@ def test_against_measured_poses_the_estimate_is_judged_by_withheld_ones(across_r
     assert "The run has no gyroscope" in read.text
     assert "late by [s]" not in read.text
     assert not (tmp_path / "figures" / "confusion.png").exists()
+
+
+@pytest.mark.usefixtures("no_photographs")
+def test_what_misleads_stands_before_the_first_number(across_result, tmp_path):
+    write_report(across_result, tmp_path)
+    assert TITLE not in Reader(tmp_path / "report.html").text
+    told = Finding("yaw_in_degrees", Level.WARNING, "yaw spans 340", "It is in degrees", "Turn it")
+    kept = Finding("gap_in_odometry", Level.NOTE, "a gap of 2 s", "A pause", "Nothing to do")
+    report = CheckReport(tmp_path / "yard", (told, kept))
+    known = read_parameters(shipped_data() / "runs" / "demo" / "parameters.toml")
+    other = dataclasses.replace(across_result, initial_terrain="mud", parameters=known)
+    write_report(other, tmp_path, reports=[report])
+    said = Reader(tmp_path / "report.html").text
+    assert "yard: yaw spans 340. It is in degrees. Turn it." in said
+    assert "a gap of 2 s" not in said
+    assert (
+        said.index(TITLE) < said.index("has no table in the parameter set") < said.index("Errors")
+    )
 
 
 @pytest.mark.usefixtures("no_photographs")

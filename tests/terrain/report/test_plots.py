@@ -72,7 +72,7 @@ def test_the_region_is_outlined_where_its_border_is_seen(axes, camera, world):
     on_x = np.minimum(abs(points[:, 0] - 0.6), abs(points[:, 0] - 0.9))
     on_y = np.minimum(abs(points[:, 1] - 0.15), abs(points[:, 1] + 0.15))
     assert np.minimum(on_x, on_y).max() < 0.006
-    assert [text.get_text() for text in axes.texts] == ["$ice^$ 88%"]
+    assert [text.get_text() for text in axes.texts] == ["$ice^$ 88 %"]
     draw_region(axes, camera, ImageLabel(1.0, "a.png", "unknown", 0.97, REGION), TINTS)
     assert axes.texts[-1].get_text() == "unknown"  # the confidence is that of a known terrain
     axes.figure.canvas.draw()
@@ -135,9 +135,9 @@ def test_a_column_of_the_confusion_is_a_true_terrain(axes):
     (shares,) = axes.images
     assert np.asarray(shares.get_array()).tolist() == [[0.75, 0], [0.25, 0], [0, 0]]
     texts = {tuple(text.get_position()): text.get_text() for text in axes.texts}
-    assert texts[0, 0] == "75%\n3"
-    assert texts[0, 1] == "25%\n1"
-    assert texts[1, 2] == "0%\n0"
+    assert texts[0, 0] == "75 %\n3"
+    assert texts[0, 1] == "25 %\n1"
+    assert texts[1, 2] == "0 %\n0"
     assert [label.get_text() for label in axes.get_xticklabels()] == ["$ice^$", "b"]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("true terrain", "label")
     axes.figure.canvas.draw()

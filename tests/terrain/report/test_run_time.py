@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from odometry.report.figure import show_run_time
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
-from terrain.cli.hints import hints
 from terrain.cli.results import print_changes
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
+from terrain.run_notes import event_lines, run_notes
 from tests.terrain.report.page_reader import Reader
 
 EPOCH_S = 1_700_000_000.25
@@ -47,7 +47,7 @@ def test_the_lines_of_the_verb_do_as_well(epoch_result, capsys):
     said = capsys.readouterr().out
     assert f"from {epoch_result.changes[0].stamp_s - EPOCH_S:.1f} s boards" in said
     assert said.count("1700000") == 1
-    assert "1700000" not in " ".join(hints(epoch_result, vision=True))
+    assert "1700000" not in " ".join([*run_notes(epoch_result), *event_lines(epoch_result)])
 
 
 def test_run_time_of_a_part_is_that_of_the_whole(across_run):

@@ -37,15 +37,15 @@ def scores(own, ideal, without, tuned):
 def test_the_first_sentence_says_how_much_less_or_more():
     assert headline(LINES, scores(0.02, 0.2, 0.08, 0.016)) == (
         "Over stretches of 5 m the error of the odometer is 0.0200 m per m of wheel travel against "
-        "the measured pose: 90% less than an ideal differential drive (0.2000), 75% less than "
-        "without vision (0.0800), 25% more than tuned (0.0160)."
+        "the measured pose: 90 % less than an ideal differential drive (0.2000), 75 % less than "
+        "without vision (0.0800), 25 % more than tuned (0.0160)."
     )
 
 
 def test_the_first_sentences_say_where_the_simple_is_better():
     own = scores(0.02, 0.2, 0.08, 0.016) | {"gyroscope, mean speed": of_error(0.015)}
     lead = headline(LINES, own)
-    assert "33% more than gyroscope with mean wheel speed (0.0150)" in lead
+    assert "33 % more than gyroscope with mean wheel speed (0.0150)" in lead
     assert lead.endswith(
         "The gyroscope with mean wheel speed, which needs no fit, is better here: 0.0150 against "
         "0.0200 m per m of wheel travel."
