@@ -23,6 +23,7 @@ from terrain.live_source import live_feel, live_source
 from terrain.live_step import LiveStep
 from terrain.place_labels import Footprint
 from terrain.sources import initial_terrain
+from terrain.terrain_names import name_notes
 from terrain.watcher import TerrainWatcher
 
 if TYPE_CHECKING:
@@ -120,6 +121,8 @@ class LiveOdometry:
         self._watcher = source if isinstance(source, TerrainWatcher) else None
         self._ekf = IcrEkf(robot.track_width, parameters, config.filter, lever_m=lever_m)
         self._at_pose = at_pose
+        classifier = None if self._watcher is None else self._watcher.classifier
+        self._name_notes = name_notes(initial, classifier, parameters)
         self._gaps = GapsSoFar()
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
@@ -147,6 +150,15 @@ class LiveOdometry:
     def feel_note(self) -> str:
         """Why there are no answers by feel, such as accelerations in g; "" where all is well."""
         return "" if self._felt is None else self._felt.live.note
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to know before the answers are used; some can be said after several images only.
+
+        Terrains that the parameter set lacks, images unlike the training photographs, `feel_note`.
+        """
+        likeness = None if self.likeness is None else self.likeness.note
+        return tuple(filter(None, (*self._name_notes, likeness, self.feel_note)))
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.

@@ -1,7 +1,7 @@
 """What to know of a result before its numbers are used: names, images, refused poses."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from terrain.evaluation_notes import event_line
 from terrain.image_label import ASTRIDE, ImageLabel
 from terrain.run_result import RunResult
 from terrain.sets_against_poses import sentences, sets_against_poses
+from terrain.terrain_names import name_notes
 from terrain.watcher import TerrainWatcher
 
 MANY_REFUSED = 0.1
@@ -26,8 +27,9 @@ def run_notes(result: RunResult) -> list[str]:
 
     They stand on the page and in result.json beside what the check finds in the recording.
     """
+    classifier = None if result.watcher is None else result.watcher.classifier
     return [
-        *_names(result),
+        *name_notes(result.initial_terrain, classifier, result.parameters),
         *([] if result.watcher is None else _images(result, result.watcher)),
         *_refused(result),
         *sentences(sets_against_poses(result)),
@@ -42,44 +44,6 @@ def event_lines(result: RunResult) -> list[str]:
     if len(events) > FEW_EVENTS:
         lines.append(f"{len(events) - FEW_EVENTS} more events of the filter, see result.json")
     return lines
-
-
-def _names(result: RunResult) -> list[str]:
-    """Terrains of the start and of the model that the parameter set does not have."""
-    known, found = result.parameters.terrains, []
-    if not known:
-        return []
-    if result.initial_terrain not in known:
-        meant = _meant([result.initial_terrain], known)
-        found.append(
-            f"{result.initial_terrain!r} has no table in the parameter set, which has "
-            f"{', '.join(known)}: it starts from a broad prior{meant}"
-        )
-    if result.watcher is not None:
-        classes = map(str, result.watcher.classifier.classes_)
-        missing = sorted(set(classes) - set(known))
-        if missing:
-            found.append(
-                f"the model knows {', '.join(map(repr, missing))}, the parameter set does not: "
-                "the motion there starts from a broad prior round the mean of the terrains that "
-                f"the set has ({', '.join(known)}){_meant(missing, known)}"
-            )
-    return found
-
-
-def _meant(names: Iterable[str], known: Iterable[str]) -> str:
-    """Which names of the set differ from others by capitals, spaces or signs alone."""
-    by_letters = {_letters(name): name for name in known}
-    found = [
-        f"{by_letters[_letters(name)]!r} there is {name!r} here: give both one name"
-        for name in names
-        if _letters(name) in by_letters
-    ]
-    return f". {'. '.join(found)}" if found else ""
-
-
-def _letters(name: str) -> str:
-    return "".join(letter for letter in name.casefold() if letter.isalnum())
 
 
 def _images(result: RunResult, watcher: TerrainWatcher) -> list[str]:

@@ -60,6 +60,7 @@ def with_steps(result, steps):
         for s in seen
     ]
     watcher = SimpleNamespace(
+        classifier=result.watcher.classifier if result.watcher else None,
         image_labels=image_labels,
         in_force=[step.terrain for step in seen],
         events=[step.switch for step in steps if step.switch is not None],
@@ -259,3 +260,15 @@ def test_what_is_requested_in_vain_is_an_error(classifier):
     table = TerrainParameters("icr", SET.terrains["boards"].values, effects=effects)
     with pytest.raises(ParameterError, match=r"\[terrain.boards\]: effects were given"):
         LiveOdometry(Robot(0.5), parameters=ParameterSet({"boards": table}))
+
+
+def test_terrains_that_the_set_lacks_are_noted_before_the_first_frame(across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live = LiveOdometry(run.robot, camera=camera, model=classifier, parameters=SET)
+    assert live.notes == ()
+    other = ParameterSet({"Boards": SET.terrains["boards"]})
+    live = LiveOdometry(run.robot, camera=camera, model=classifier, parameters=other)
+    (note,) = live.notes
+    assert note.startswith("the model knows 'boards', 'gravel', the parameter set does not")
+    assert note.endswith("'Boards' there is 'boards' here: give both one name")

@@ -25,7 +25,7 @@ def result(initial="gravel", tables=("gravel",), classes=None, *, refused=0, eve
         initial_terrain=initial,
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
-        run=SimpleNamespace(pose=None, began_s=1000.0),
+        run=SimpleNamespace(pose=None, terrain=None, began_s=1000.0),
         named_start=None,
         replay=SimpleNamespace(
             innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
