@@ -39,7 +39,7 @@ def test_ticks_ask_for_their_number_and_are_read_with_it(tmp_path):
 
 def test_places_of_a_wrong_unit_are_no_run_of_the_few_rows_that_fit(tmp_path):
     bag = bag_of((["left_wheel", "right_wheel"], angles() * 90 + 0.3, None))
-    with pytest.raises(BagError, match=r"\d\d% of the wheel speeds are impossible.*unit \(rad\)"):
+    with pytest.raises(BagError, match=r"\d\d % of the wheel speeds are impossible.*unit \(rad\)"):
         imported(tmp_path / "run", bag.write(tmp_path / "drive"))
 
 
