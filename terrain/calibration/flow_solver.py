@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from odometry.arrays import BoolArray, FloatArray
+from terrain.calibration.carried_rays import carried_derivatives, carried_rays
 from terrain.calibration.tracks import Tracks
-from terrain.calibration.warp import carried_rays
 
 # Standard deviations of the odometer's steps: shares of the way (x, y) and of the turn
 ALONG, ASIDE, ASIDE_PER_RAD_M, TURN_RAD, TURN = 0.02, 0.02, 0.05, 0.003, 0.05
@@ -49,12 +50,25 @@ class GroundFlow:
         after = carried_rays(tracks.before, values, self.place_m, steps[tracks.pair])
         return np.asarray((after - tracks.after) * self.focus_px)
 
+    def derivatives(self, values: FloatArray, steps: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """`residuals`, and their derivatives (N, 2, 7) by `values` and by x, y, yaw of a step."""
+        tracks = self.tracks
+        after, slopes = carried_derivatives(tracks.before, values, self.place_m, steps[tracks.pair])
+        return (after - tracks.after) * self.focus_px, slopes * self.focus_px
+
     def cost(self, values: FloatArray, motions: FloatArray, feature_px: float) -> float:
         """Cauchy's loss of the residuals, and the squares of what was added to the steps (P, 3)."""
         residuals = self.residuals(values, self.tracks.steps + motions)
         squares = (residuals**2).sum(axis=1) / feature_px**2
         loss = np.log1p(np.nan_to_num(squares, nan=LOST))
         return float(loss.sum() + ((motions / self.step_sigmas) ** 2).sum())
+
+    @cached_property
+    def features_of_pairs(self) -> csr_array:
+        """1 in row p and column n where feature n is of pair p: (P, N)."""
+        count, pairs = len(self.tracks.pair), len(self.tracks.steps)
+        places = (self.tracks.pair, np.arange(count))
+        return csr_array((np.ones(count), places), shape=(pairs, count))
 
     @cached_property
     def step_sigmas(self) -> FloatArray:
@@ -67,8 +81,8 @@ class GroundFlow:
 
 FEATURE_PX = 0.5  # scale of Cauchy's loss: features that are farther off count ever less
 STEPS = 40
-DIFFERENCE = 1e-6  # of derivatives [m, rad]
 AT_REST = 1e-7  # of a change of the mount [m, rad]
+ENOUGH = 1e-3  # of the loss [nats]: a smaller decrease changes the mount by some 1e-6
 MOST_DAMPING = 1e6
 
 
@@ -124,17 +138,18 @@ def solve_mount(
     damping, cost = 1e-3, flow.cost(values, motions, feature_px)
     for _ in range(STEPS):
         blocks = _blocks(flow, values, motions, free, feature_px)
-        change = np.zeros(0)
+        change, gained = np.zeros(0), 0.0
         while damping < MOST_DAMPING:
             change, changes = _change(blocks, flow.step_sigmas, motions, damping)
             tried, tried_motions = values.copy(), motions + changes
             tried[free] += change
             new_cost = flow.cost(tried, tried_motions, feature_px) if tried[0] > 0 else np.inf
             if new_cost <= cost:
+                gained = cost - new_cost
                 values, motions, cost, damping = tried, tried_motions, new_cost, damping / 5
                 break
             damping *= 5
-        if damping >= MOST_DAMPING or np.abs(change).max(initial=0.0) < AT_REST:
+        if gained < ENOUGH or np.abs(change).max(initial=0.0) < AT_REST:
             break
     return Solution(values, motions, flow.residuals(values, flow.tracks.steps + motions))
 
@@ -142,16 +157,14 @@ def solve_mount(
 def _blocks(
     flow: GroundFlow, values: FloatArray, motions: FloatArray, free: BoolArray, feature_px: float
 ) -> _Blocks:
-    steps, pairs = flow.tracks.steps + motions, flow.tracks.pair
-    here = flow.residuals(values, steps)
-    columns = [flow.residuals(values + DIFFERENCE * axis, steps) for axis in np.eye(4)[free]]
-    columns += [flow.residuals(values, steps + DIFFERENCE * axis) for axis in np.eye(3)]
-    slopes = [(column - here) / DIFFERENCE for column in columns]
-    rows = np.stack([*slopes, here], axis=-1) / feature_px
+    here, slopes = flow.derivatives(values, flow.tracks.steps + motions)
+    slopes = slopes[..., np.append(free, [True, True, True])]
+    rows = np.concatenate([slopes, here[..., None]], axis=-1) / feature_px
     weights = 1 / (1 + (rows[..., -1] ** 2).sum(axis=1))  # Cauchy's
     rows = np.nan_to_num(rows * np.sqrt(weights)[:, None, None])
-    summed = np.zeros((len(steps), rows.shape[2], rows.shape[2]))
-    np.add.at(summed, pairs, np.einsum("nki,nkj->nij", rows, rows))
+    size = rows.shape[2]
+    squares = (rows.swapaxes(1, 2) @ rows).reshape(-1, size * size)
+    summed = (flow.features_of_pairs @ squares).reshape(-1, size, size)
     mount, step = slice(0, -4), slice(-4, -1)
     return _Blocks(
         summed[:, mount, mount].sum(axis=0),

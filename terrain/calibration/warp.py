@@ -6,8 +6,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
-from odometry.geometry import se3
-from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
+from terrain.calibration.carried_rays import carried_rays
 from terrain.camera_files.lens_models import Lens
 
 FEATURES = 150
@@ -61,7 +60,6 @@ def _flow(
 
 CELL_PX = 8  # the map is worked out at every so many pixels, and linear between
 OUTSIDE_PX = -1e4
-LEAST_SLOPE, LEAST_DEPTH_M = 1e-3, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,37 +108,3 @@ class Warp:
         at_u, at_v = np.meshgrid(np.arange(width) / CELL_PX, np.arange(height) / CELL_PX)
         fine = cv2.remap(coarse, at_u.astype(np.float32), at_v.astype(np.float32), cv2.INTER_LINEAR)
         return np.asarray(fine[..., 0]), np.asarray(fine[..., 1])
-
-
-def carried_rays(
-    rays: FloatArray, values: FloatArray, place_m: FloatArray, steps: FloatArray
-) -> FloatArray:
-    """Normalised image coordinates (N, 2) after the steps of points of the terrain at `rays`.
-
-    Parameters
-    ----------
-    rays : (N, 2)
-        Normalised, without distortion, before the steps.
-    values : (4,)
-        z [m], roll, pitch, yaw [rad] of the mount.
-    place_m : (2,)
-        x and y of the mount.
-    steps : (N, 3) or (3,)
-        Motion of the robot: x, y [m], yaw [rad].
-
-    Returns
-    -------
-    (N, 2)
-        NaN for rays that do not meet the terrain, or are then behind the camera.
-    """
-    robot_from_optical = se3.rotation_from_roll_pitch_yaw(values[1:]) @ OPTICAL_FROM_CAMERA.T
-    directions = rays @ robot_from_optical[:, :2].T + robot_from_optical[:, 2]
-    down = np.where(directions[:, 2] < -LEAST_SLOPE, -directions[:, 2], np.nan)
-    ground_m = place_m + directions[:, :2] * (values[0] / down)[:, None]
-    moved = ground_m - steps[..., :2]
-    sine, cosine = np.sin(steps[..., 2]), np.cos(steps[..., 2])
-    x = cosine * moved[:, 0] + sine * moved[:, 1] - place_m[0]
-    y = -sine * moved[:, 0] + cosine * moved[:, 1] - place_m[1]
-    seen = np.column_stack([x, y, np.full(len(x), -values[0])]) @ robot_from_optical
-    depth = np.where(seen[:, 2] > LEAST_DEPTH_M, seen[:, 2], np.nan)
-    return np.asarray(seen[:, :2] / depth[:, None])
