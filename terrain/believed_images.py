@@ -2,7 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from odometry.checks.finding import CheckReport
+from odometry.run import Run
+from terrain.errors import PatchError
 from terrain.run_options import RunOptions
 
 # Findings by which images show other terrain than that ahead of the robot at their stamps: each
@@ -10,6 +14,8 @@ from terrain.run_options import RunOptions
 ELSEWHERE = frozenset(
     {"images_unrelated", "images_unordered", "images_reversed", "images_upside_down"}
 )
+# ... and by which some of them show nothing new
+FROZEN = "images_frozen"
 
 
 def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]:
@@ -35,3 +41,28 @@ def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]
     source = None if options.source == "camera" else options.source
     said = f"vision is left out, as with --no-vision: {found[0].cause}"
     return replace(options, vision=False, source=source), said
+
+
+def run_to_label(run: Run, report: CheckReport) -> Run:
+    """A run without the images of a frozen camera, which show other terrain than that ahead.
+
+    Raises
+    ------
+    PatchError
+        If all images show other terrain, or none is left.
+    """
+    for finding in report.findings:
+        if finding.name in ELSEWHERE:
+            raise PatchError(
+                f"{run.folder}: no patch can be labelled by these images: {finding.cause}"
+            )
+    if run.images is None:
+        return run
+    times_s = run.images.stamps_s - run.odometry.stamps_s[0]
+    kept = np.ones(len(times_s), dtype=bool)
+    for finding in report.findings:
+        for from_s, to_s in finding.spans_s if finding.name == FROZEN else ():
+            kept &= (times_s < from_s) | (times_s > to_s)
+    if not kept.any():
+        raise PatchError(f"{run.folder}: no image is left: the camera was frozen all the time")
+    return replace(run, images=run.images.rows(np.flatnonzero(kept)))

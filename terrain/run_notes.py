@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.evaluation_notes import event_line
@@ -53,10 +53,11 @@ def _images(result: RunResult, watcher: TerrainWatcher) -> list[str]:
         found.append(watcher.classifier.described)
     likeness = watcher.seen.likeness
     if likeness is not None and likeness.note is not None:
-        doubted = sum(label.reason in {DOUBTFUL, IMPROBABLE} for label in watcher.image_labels)
+        doubtful = {DOUBTFUL, IMPROBABLE, TOO_UNLIKE}
+        doubted = sum(label.reason in doubtful for label in watcher.image_labels)
         learned = getattr(watcher.classifier, "confidence_", None) is not None
         what = f"Names that are not surely enough right are unknown ({doubted} images)"
-        found.append(f"{likeness.note}. {what if learned else 'Here they count less'}")
+        found.append(f"{likeness.note}. {what if learned or doubted else 'Here they count less'}")
     empty = no_ground_note([image_label.reason for image_label in watcher.image_labels])
     if empty is not None:
         found.append(empty)
@@ -102,7 +103,7 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         image_label.reason or "unlike any training patch" for image_label in image_labels
     )
     words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
-    nothing = "no terrain came into force but that of the start"
+    nothing = "the terrain is that of the start, and unknown where no image supports it for long"
     astride = sum(count for reason, count in reasons.items() if reason.startswith(ASTRIDE))
     others = (count for reason, count in reasons.items() if not reason.startswith(ASTRIDE))
     if astride > max(others, default=0):
@@ -114,8 +115,9 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         ]
     return [
         f"vision named no terrain in any of {len(image_labels)} images: {words}; {nothing}. "
-        "Try terrain-odometry camera RUN --model MODEL --out DIR: it shows what the camera sees "
-        "and suggests a pitch"
+        "Look at them with terrain-odometry camera RUN --model MODEL --out DIR: where they do not "
+        "show the terrain ahead it suggests a pitch; where they do, the model needs patches of "
+        "this terrain and camera (label, train)"
     ]
 
 

@@ -158,10 +158,15 @@ class Switch:
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """The switch with the robot at a pose (3,) of the odometry frame."""
         if self.place_beliefs is None or not self.place_beliefs.place_labels:
+            if not self.place_labels:
+                supported_m, unsupported_m = travel_m - self.unsupported_m, self.unsupported_m
+            else:  # all of them unknown: nothing supports the terrain of the start either
+                supported_m, unsupported_m = self.supported_m, travel_m - self.supported_m
             return replace(
                 self,
                 shares={self.in_force: 1.0},
-                supported_m=travel_m - self.unsupported_m,
+                supported_m=supported_m,
+                unsupported_m=unsupported_m,
                 event=None,
             )
         points = se2.transform(pose, self.footprint.middle_and_points)

@@ -1,7 +1,7 @@
 """Folders of photographs that are not what they seem: classes that vanish, copies, one video."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import cv2
@@ -41,15 +41,19 @@ def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -
                     f"{folder} holds no photographs that are read, but {path.relative_to(folder)}; "
                     f"expected {folder}/*.jpg or *.png: convert or move its images"
                 )
+    if alike := alike_names(classes):
+        raise PatchError(
+            f"{root}: {' and '.join(map(repr, alike))} differ by case or spaces alone; "
+            "expected one folder for each terrain"
+        )
+
+
+def alike_names(terrains: Iterable[str]) -> list[str]:
+    """Names that differ by case or spaces alone; none where all are different."""
     names: dict[str, list[str]] = defaultdict(list)
-    for name in classes:
+    for name in terrains:
         names["".join(name.casefold().split())].append(name)
-    for alike in names.values():
-        if len(alike) > 1:
-            raise PatchError(
-                f"{root}: {' and '.join(map(repr, alike))} differ by case or spaces alone; "
-                "expected one folder for each terrain"
-            )
+    return next((alike for alike in names.values() if len(alike) > 1), [])
 
 
 def check_no_photo_in_two_classes(photos: Sequence[tuple[Path, str]]) -> None:

@@ -115,9 +115,10 @@ def label(
 
     from odometry.feel.model_file import read_feel_model
     from odometry.parameters import read_parameters
+    from terrain.believed_images import run_to_label
     from terrain.cli.label_text import spans_by_run, summary
     from terrain.cli.outputs import claim_folder
-    from terrain.cli.recordings import read_run
+    from terrain.cli.recordings import checks_made, read_run
     from terrain.labelling.corrections import read_corrections
     from terrain.labelling.given_terrain import SURE, told_by_feel, told_by_spans, told_terrain
     from terrain.labelling.label_runs import label_runs
@@ -132,7 +133,10 @@ def label(
     by_run = spans_by_run(spans, runs)
     output = claim_folder(out, reads_images=True)
     corrections = read_corrections(out)
-    read = [read_run(folder, span, images=True) for folder in runs]
+    read = []
+    for folder in runs:
+        whole = read_run(folder, span, images=True)
+        read.append(run_to_label(whole, checks_made()[-1]))
     if by_feel is not None:
         model = read_feel_model(by_feel)
         given = [told_by_feel(run, model, sure or SURE) for run in read]

@@ -43,7 +43,16 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
             f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
             f"others is a group of its own, such as {min(photos - grouped)}"
         )
-    if alike := look_alikes(dict(zip(patches.photos, patches.groups, strict=True))):
+    alike = look_alikes(dict(zip(patches.photos, patches.groups, strict=True)))
+    label_of = dict(zip(patches.photos, patches.labels, strict=True))
+    if contrary := [pair for pair in alike if label_of[pair[0]] != label_of[pair[1]]]:
+        one, other = contrary[0]
+        yield (
+            f"Note: {len(contrary)} of {len(photos)} photographs look like one with another label, "
+            f"such as {one} ({label_of[one]}) and {other} ({label_of[other]}): one scene cannot be "
+            "both, and names of either mean little. Move or delete the wrong one"
+        )
+    if alike := [pair for pair in alike if pair not in contrary]:
         one, other = alike[0]
         yield (
             f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "

@@ -11,6 +11,7 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.run_terrains import NamedTerrain
 from terrain.camera import Camera
+from terrain.classification.photo_faults import alike_names
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections
 from terrain.labelling.driven_path import DrivenWay
@@ -90,7 +91,8 @@ def label_runs(
     Raises
     ------
     OdometryError
-        If a run has no images or camera, nothing can be labelled, or a patch that was moved by
+        If a run has no images or camera, two names of terrains differ by case alone, nothing can be
+        labelled, or a patch that was moved by
         hand is not among the squares any more.
 
     Examples
@@ -104,6 +106,11 @@ def label_runs(
     ['gravel']
     """
     config, corrections = config or LabelConfig(), corrections or Corrections()
+    if alike := alike_names(sorted({name for of in given for name in of.terrains})):
+        raise PatchError(
+            f"{' and '.join(map(repr, alike))} differ by case or spaces alone; expected one name "
+            "for each terrain"
+        )
     finders = [square_finder(run, of, parameters) for run, of in zip(runs, given, strict=True)]
     scale = patch_scale(finders, config)
     squares: list[LabelledSquare] = []

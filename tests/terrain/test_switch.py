@@ -164,6 +164,17 @@ def test_before_the_first_label_no_travel_is_without_support():
     assert (switch.supported_m, switch.unsupported_m) == (5.0, 0.0)
 
 
+def test_a_start_that_only_unknown_labels_follow_is_no_longer_known():
+    """Of travel before the first label nothing counts."""
+    switch = start()
+    for x in np.arange(0.0, 12.0, 0.25):
+        if x >= 5:
+            switch = switch.add_label(seen_at(x, "unknown"))
+        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
+        assert switch.footing.terrain == ("grass" if x <= 7.75 else "unknown")
+    assert switch.in_force == "grass"
+
+
 @pytest.mark.parametrize("yaw", [0.0, np.pi])
 def test_the_terrain_in_force_is_supported_by_the_middle_of_the_footprint(yaw):
     """Grass under the middle, and gravel under the front or under the rear."""

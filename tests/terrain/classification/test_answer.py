@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE, Classification
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.likeness import Likeness
@@ -27,6 +27,14 @@ def model():
 def test_a_doubtful_name_is_unknown_with_its_reason():
     answer = DOUBTED.unless_doubtful(UNLIKE)
     assert answer == replace(DOUBTED, label="unknown", reason=DOUBTFUL)
+
+
+def test_a_model_that_never_erred_names_nothing_in_images_far_beyond_training():
+    without = replace(DOUBTED, probability_right=None)
+    far = replace(UNLIKE, beyond=2.1)
+    assert without.unless_doubtful(far) == replace(without, label="unknown", reason=TOO_UNLIKE)
+    assert replace(without, probability_right=0.71).unless_doubtful(far).label == "mud"
+    assert without.unless_doubtful(replace(UNLIKE, rank=0.9, beyond=None)).label == "mud"
 
 
 @pytest.mark.parametrize(

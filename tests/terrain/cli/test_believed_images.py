@@ -1,16 +1,19 @@
 """Images that show other terrain than that ahead are not believed, by `run` and by `batch`."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from odometry.checks.finding import CheckReport, Finding, Level
-from terrain.believed_images import ELSEWHERE, believed
+from odometry.run import Run
+from terrain.believed_images import ELSEWHERE, FROZEN, believed, run_to_label
 from terrain.cli.batch import batch
 from terrain.cli.run import run
 from terrain.config import Config
+from terrain.errors import PatchError
 from terrain.run_options import RunOptions
 
 
@@ -51,6 +54,25 @@ def test_other_sources_stay(source):
     options = RunOptions(Config(), source=source, feel=Path("feel"))
     report = CheckReport(Path("a"), (found("images_unrelated"),))
     assert believed(options, report) == (options, "")
+
+
+@pytest.mark.parametrize("name", sorted(ELSEWHERE))
+def test_no_patch_is_cut_from_them(name, across_run):
+    of, report = Run.read(across_run), CheckReport(across_run, (found(name),))
+    with pytest.raises(PatchError, match=r"no patch can be labelled .*: Images are of another"):
+        run_to_label(of, report)
+
+
+def test_of_a_frozen_camera_only_the_other_images_are_labelled(across_run):
+    of = Run.read(across_run)
+    held = replace(found(FROZEN), spans_s=((1.0, 2.0), (3.0, 3.5)))
+    times_s = of.images.stamps_s - of.odometry.stamps_s[0]
+    other = (times_s < 1) | ((times_s > 2) & (times_s < 3)) | (times_s > 3.5)
+    kept = run_to_label(of, CheckReport(across_run, (held, found("images_late"))))
+    assert 0 < len(kept.images) < len(of.images)
+    assert kept.images.stamps_s.tolist() == of.images.stamps_s[other].tolist()
+    with pytest.raises(PatchError, match="frozen all the time"):
+        run_to_label(of, CheckReport(across_run, (replace(held, spans_s=((0.0, 1e9),)),)))
 
 
 @pytest.mark.usefixtures("no_report", "of_another_drive")

@@ -169,3 +169,11 @@ def test_a_camera_that_sees_no_ground_that_is_driven_over_is_refused(run, told_s
 def test_a_scale_without_a_use_is_refused(run, told_spans, config, message):
     with pytest.raises(PatchError, match=message):
         label_runs([run], [told_spans(run)], config)
+
+
+def test_two_spellings_of_a_terrain_are_refused(run, told_spans):
+    given = told_spans(run)
+    *others, last, nothing = given.names
+    names = (*others, last.capitalize(), nothing)
+    with pytest.raises(PatchError, match="'Gravel' and 'gravel' differ by case"):
+        label_runs([run], [replace(given, names=names)], SMALL)

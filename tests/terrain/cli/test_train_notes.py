@@ -1,0 +1,34 @@
+"""What `train` says of photographs that look alike."""
+
+from types import SimpleNamespace
+
+import cv2
+import numpy as np
+
+from terrain.classification.patches import find_photos, load_patches
+from terrain.cli.train_notes import notes
+
+
+def said(folder):
+    training = SimpleNamespace(
+        classifier=SimpleNamespace(patch_size_px=64, colour_=False),
+        patches=load_patches(find_photos(folder), 64),
+    )
+    return list(notes(training, folder, colour=False))
+
+
+def test_one_scene_with_two_labels_is_named_before_scenes_that_are_there_twice(tmp_path, rng):
+    scenes = [cv2.GaussianBlur(rng.normal(size=(120, 160)), (0, 0), 6) for _ in range(2)]
+    files = {"sand/a": 0, "sand/b": 0, "mud/a": 1}
+    for name, scene in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        image = 128 + 400 * scenes[scene] + rng.normal(scale=5, size=(120, 160))
+        cv2.imwrite(f"{tmp_path / name}.png", np.clip(image, 0, 255).astype(np.uint8))
+    (copies,) = said(tmp_path)
+    assert copies.startswith("Note: 2 of 3 photographs look like another one, such as ")
+    again = np.asarray(cv2.imread(f"{tmp_path / 'mud/a'}.png"))
+    cv2.imwrite(f"{tmp_path / 'sand/c'}.jpg", again)
+    contrary, copies = said(tmp_path)
+    assert "2 of 4 photographs look like one with another label" in contrary
+    assert f"{tmp_path / 'mud/a'}.png (mud) and {tmp_path / 'sand/c'}.jpg (sand)" in contrary
+    assert "2 of 4 photographs look like another one" in copies
