@@ -9,10 +9,11 @@ from terrain.classification.likeness import Likeness
 # Probability of being right: a wrong name costs more than twice what a right one brings.
 TRUSTED = 0.7
 DOUBTFUL = f"unlike the training photographs, and not right with a probability of {TRUSTED} or more"
-# Of a model whose answers were all right where they were held out, which teaches it no such
-# probability: where images are so far beyond training (`Likeness.beyond`), no name is worth much.
-MOST_BEYOND = 2.0
-TOO_UNLIKE = f"more than {MOST_BEYOND:g} times as unlike training as runs of its photographs"
+# Where images are so far beyond training (`Likeness.beyond`), no name is worth much: of a model
+# whose answers were all right where they were held out, which teaches it no such probability; and
+# of one that learned it, whose altered photographs lie nearer.
+MOST_BEYOND, MOST_BEYOND_LEARNED = 2.0, 10.0
+TOO_UNLIKE = "too far from the training photographs for any name"
 # Of any image: three of four such names would be wrong.
 PROBABLE = 0.25
 IMPROBABLE = f"right with a probability below {PROBABLE}"
@@ -62,9 +63,9 @@ class Classification:
     def unless_doubtful(self, likeness: Likeness | None) -> Self:
         """The answer, ``unknown`` where its name is not right with `TRUSTED` or more.
 
-        Where the model does not know that probability, beyond `MOST_BEYOND`. It is asked only where
-        the images together, of which this is one, are unlike the training photographs: elsewhere
-        as many right names would be lost as wrong ones.
+        No name is left where the images together, of which this is one, are far beyond training.
+        Nothing is asked where they are like the training photographs: as many right names would be
+        lost as wrong ones.
 
         Parameters
         ----------
@@ -73,10 +74,11 @@ class Classification:
         """
         if likeness is None or not likeness.is_unlike or self.label == UNKNOWN:
             return self
-        if self.probability_right is None:
-            is_far = likeness.beyond is not None and likeness.beyond > MOST_BEYOND
-            return replace(self, label=UNKNOWN, reason=TOO_UNLIKE) if is_far else self
-        if self.probability_right >= TRUSTED:
+        learned = self.probability_right is not None
+        most = MOST_BEYOND_LEARNED if learned else MOST_BEYOND
+        if likeness.beyond is not None and likeness.beyond > most:
+            return replace(self, label=UNKNOWN, reason=TOO_UNLIKE)
+        if self.probability_right is None or self.probability_right >= TRUSTED:
             return self
         return replace(self, label=UNKNOWN, reason=DOUBTFUL)
 
