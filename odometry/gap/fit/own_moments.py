@@ -1,6 +1,7 @@
 """Effects on held-out runs, where each run has its own moment or values."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,7 +13,12 @@ from odometry.effects.reference_step import ReferenceStep
 from odometry.effects.time_course import FromAMoment
 from odometry.gap.fit.bursts import is_in_bursts, with_events_of_run
 from odometry.gap.fit.own_steps import with_step_of_run
-from odometry.gap.fit.own_values import OWN, with_values_of_run
+from odometry.gap.fit.own_values import (
+    OWN,
+    is_course,
+    with_courses_of_run,
+    with_values_of_run,
+)
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
@@ -38,19 +44,28 @@ def with_own_moments(
 
     A moment, and coefficients, are searched on every other window of a run, and evaluated on the
     rest. Pieces of the fitted runs themselves know theirs, and are judged whole, as all are where
-    nothing is a run's own. Events of a burst are searched on the poses within the windows, and
-    evaluated by those at their ends.
+    nothing is a run's own. But a course in run time is known only where there are windows: that
+    of a fitted run is found on its windows and on every other one of its pieces. Events of a burst
+    are searched on the poses within the windows, and evaluated by those at their ends.
     """
     for scene in held_out if any(is_in_bursts(one.effect) for one in effects) else ():
         effects = with_events_of_run(base, effects, scene, calibration)
-    known = {scene.run.folder for scene in fitted}
+    known = {scene.run.folder: scene for scene in fitted}
     others = [scene for scene in held_out if scene.run.folder not in known]
     begins = [place for place, one in enumerate(effects) if _begins(one)]
     steps = [i for i, one in enumerate(effects) if isinstance(one.effect, ReferenceStep)]
     own = any(isinstance(one.effect, OWN) for one in effects)
-    if not (begins or steps or own) or not others:
+    courses = any(is_course(one) for one in effects)
+    if not courses and (not (begins or steps or own) or not others):
         return tuple(effects), list(held_out)
-    extended = list(effects)
+    extended, judged = list(effects), []
+    for scene in (scene for scene in held_out if scene.run.folder in known):
+        turn = np.arange(len(scene)) % 2 == 1
+        if courses:
+            of_run = known[scene.run.folder]
+            shown = replace(of_run, windows=np.vstack([of_run.windows, scene.windows[turn]]))
+            extended = with_courses_of_run(base, extended, shown, calibration)
+        judged.append(scene.where(~turn) if courses else scene)
     for scene in others:
         odd = np.arange(len(scene)) % 2 == 1
         for place in begins:
@@ -59,7 +74,6 @@ def with_own_moments(
             extended = with_step_of_run(base, extended, place, scene.where(odd))
         if own:
             extended = with_values_of_run(base, extended, scene.where(odd), calibration)
-    judged = [scene for scene in held_out if scene.run.folder in known]
     for number, scene in enumerate(others, start=-len(others)):
         moments_s = [extended[place].values[number] for place in begins]
         moments_s += [moment_of(extended[place], number) for place in steps]

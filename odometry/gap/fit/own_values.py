@@ -11,6 +11,7 @@ from odometry.effects.chain import Chain
 from odometry.effects.corrected import Added
 from odometry.effects.map_fault import OfEachRun
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.time_course import run_numbers
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses
@@ -100,6 +101,25 @@ def with_values_of_run(
     return extended
 
 
+def is_course(added: Added) -> bool:
+    """Whether an effect follows run time in each run by its own: its neighbours alone know it."""
+    return isinstance(added.effect, ResidualOfEachRun) and added.effect.variable == "time"
+
+
+def with_courses_of_run(
+    base: Base, effects: Sequence[Added], scene: DenseWindows, calibration: Calibration
+) -> list[Added]:
+    """Effects with the courses of a run that they know already found anew on the windows given."""
+    scene = with_fewer_poses(scene, POSES)
+    whiteners = whitening(scene, calibration.noise)
+    found = list(effects)
+    places = [place for place, one in enumerate(found) if is_course(one)]
+    for _ in range(ROUNDS):
+        for place in places:
+            found[place] = _with_course(base, found, place, scene, whiteners)
+    return found
+
+
 def _solved(
     base: Base, effects: Sequence[Added], place: int, scene: DenseWindows, whiteners: FloatArray
 ) -> Added:
@@ -110,12 +130,22 @@ def _solved(
         return _solved_fault(base, effects, place, scene, whiteners)
     if not isinstance(effect, ResidualOfEachRun):
         return added
-    own = slice(-len(effect.terms), None)
+    return _with_course(base, effects, place, scene, whiteners)
+
+
+def _with_course(
+    base: Base, effects: Sequence[Added], place: int, scene: DenseWindows, whiteners: FloatArray
+) -> Added:
+    """A smooth function of each run with the coefficients of the scene's run that fit it best."""
+    effect, values = effects[place].effect, effects[place].values.copy()
+    if not isinstance(effect, ResidualOfEachRun):
+        return effects[place]
+    count, number = len(effect.terms), int(run_numbers(scene.inputs)[0])
+    own = slice(number * count, (number + 1) * count)
     before = Chain(base, effects[:place], scene.inputs)
     changes = effect.columns(before.twist, before.inputs, base)[own]
     jacobian = whitened(whiteners, Responses(base, effects, scene).of(changes))
     rows = whitened_residuals(base, effects, [scene], [whiteners])
-    values = added.values.copy()
     values[own] = damped(jacobian, rows - jacobian @ values[own], effect.spread)
     return Added(effect, values)
 

@@ -62,6 +62,24 @@ def test_another_run_has_its_own_course_judged_on_windows_between(pushed, known,
     np.testing.assert_array_equal(judged[0].start_s, pushed[1].start_s[::2])
 
 
+def test_pieces_of_a_fitted_run_have_their_course_found_on_windows_beside_them(pushed, known):
+    """Knots within a piece that is held out lie where no fitted window is."""
+    run = pushed[0]
+    out = np.floor(run.start_s / CONFIG.part_s) % CONFIG.held_back == 1
+    fitted, held = run.where(~out), run.where(out)
+    fitter = Fitter(known, measured_of([fitted], known, CONFIG))
+    found = best_course(fitter, fitter.fit([]), [held], CONFIG)
+    of_fit = found.fitted.effects
+    effects, judged = with_own_moments(known.base, of_fit, [held], [fitted], known)
+    np.testing.assert_array_equal(judged[0].start_s, held.start_s[::2])
+    before, of_neighbours, after = (
+        gap_of(known.base, of, judged, CONFIG.part_s).value for of in ((), of_fit, effects)
+    )
+    assert before > 0.08
+    assert after - NOISE_M < 0.4 * (of_neighbours - NOISE_M)
+    assert before - after > 0.8 * (before - NOISE_M)
+
+
 def test_where_nothing_is_there_the_course_does_not_pay(make_scene, known):
     still = averaged_windows(make_scene(7, lambda _, twist: twist, duration_s=120.0)).numbered(0)
     fitter = Fitter(known, measured_of([still], known, CONFIG))
