@@ -23,7 +23,16 @@ from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
 
-__all__ = ["ANGLES", "HARMONICS", "OF_TREADS", "VARIABLES", "Residual", "basis_of", "variables_of"]
+__all__ = [
+    "ANGLES",
+    "HARMONICS",
+    "OF_TREADS",
+    "VARIABLES",
+    "Residual",
+    "basis_of",
+    "variable_of",
+    "variables_of",
+]
 
 COMPONENTS = ("v_x", "v_y", "omega")  # of the twist
 WORLD = ("world_x", "world_y")  # of a velocity over the world, along the axes of the reference

@@ -13,6 +13,7 @@ from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import finite_number
 
 PLACE = "place"
+AXES = ("x", "y")
 
 
 @dataclass(frozen=True)
@@ -31,12 +32,15 @@ class ResidualOfPlace(Residual):
     spread : float
         Standard deviation about zero that is expected of a coefficient: a few windows at a node
         do not determine it.
+    axis : str
+        "x" or "y": of this coordinate alone, and nodes have 0 as the other; "" of both.
     """
 
     variable: str = PLACE
     spacing_m: float = 1.0
     nodes: tuple[tuple[int, int], ...] = ()
     spread: float = 0.1
+    axis: str = ""
 
     def __post_init__(self) -> None:
         nodes: object = self.nodes  # a table of a file may hold anything
@@ -44,6 +48,8 @@ class ResidualOfPlace(Residual):
             raise ParameterError(f"a residual of {self.variable!r} with nodes, expected {PLACE!r}")
         if not isinstance(nodes, tuple) or not all(map(_is_node, nodes)):
             raise ParameterError(f"nodes = {nodes!r}, expected pairs of whole numbers")
+        if self.axis not in ("", *AXES):
+            raise ParameterError(f"axis = {self.axis!r}, expected one of {', '.join(AXES)}")
         for name, size in (("spacing_m", self.spacing_m), ("spread", self.spread)):
             if not finite_number(size, name) > 0:
                 raise ParameterError(f"{name} = {size}, expected more than 0")
@@ -86,13 +92,16 @@ class ResidualOfPlace(Residual):
         """Weight (N, B) of each node at positions (N, 2)."""
         nodes = np.array(self.nodes, dtype=np.float64).reshape(-1, 2)
         apart = np.abs(position_m[:, None] / self.spacing_m - nodes)
+        if self.axis:
+            apart = apart[..., [AXES.index(self.axis)]]
         return np.asarray(np.maximum(1.0 - apart, 0.0).prod(axis=-1))
 
     @property
     def key(self) -> tuple[str, str, str]:
         """See `Effect.key`: a finer map beside a coarse one is another."""
         name, form, by = super().key
-        return name, f"{form}, {self.spacing_m:.3g} m", by
+        along = f" along {self.axis}" if self.axis else ""
+        return name, f"{form}, {self.spacing_m:.3g} m{along}", by
 
     def settings(self) -> dict[str, Any]:
         """See `Effect.settings`."""
@@ -101,6 +110,7 @@ class ResidualOfPlace(Residual):
             "spacing_m": self.spacing_m,
             "nodes": [list(node) for node in self.nodes],
             "spread": self.spread,
+            **({"axis": self.axis} if self.axis else {}),
             "terms": [list(term) for term in self.terms],
         }
 

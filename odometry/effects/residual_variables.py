@@ -9,9 +9,10 @@ from odometry.models.inputs import Inputs
 
 HARMONICS = 2
 ANGLES = ("heading", "wheel_angle", "left_wheel_angle", "right_wheel_angle")
+FURTHER = ("tread_speed_lost", "tread_speed_gained")  # no rivals of names
 OF_TREADS = (  # variables (N, 2): of each tread its own
     *("tread_speed", "tread_acceleration", "other_tread_speed"),
-    "tread_travel_since_reversal",
+    *("tread_travel_since_reversal", *FURTHER),
 )
 WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
     *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
@@ -26,6 +27,7 @@ TURN_OVER_M = 1.0
 FORCE_OVER_S = 1.0
 MEAN_OVER_S = 8.0  # heat, charge and mud come and go over seconds
 STOP_S = 0.5  # a shorter rest is a reversal
+CHANGED_OVER_S = 0.6  # a body slides on for about as long
 
 
 def variables_of(inputs: Inputs, twist: FloatArray | None = None) -> dict[str, FloatArray]:
@@ -90,6 +92,19 @@ def _accelerations(speeds_m_s: FloatArray, time_s: FloatArray | None) -> FloatAr
     return np.asarray((ahead - behind) / ACCELERATION_OVER_S)
 
 
+def _changed(inputs: Inputs, *, to_more: bool) -> FloatArray | None:
+    """Speed (N, 2) [m/s] that each tread gained, or lost, in magnitude over CHANGED_OVER_S.
+
+    With the sign of the faster of both speeds; zero where the change is of the other kind.
+    """
+    if inputs.time_s is None:
+        return None
+    time_s, now = np.asarray(inputs.time_s), inputs.tread_speeds_m_s
+    then = now[np.maximum(np.searchsorted(time_s, time_s - CHANGED_OVER_S, side="right") - 1, 0)]
+    more, less = (now, then) if to_more else (then, now)
+    return np.asarray(np.sign(more) * np.maximum(np.abs(more) - np.abs(less), 0.0))
+
+
 def _since_reversal(speed_m_s: FloatArray, inputs: Inputs) -> FloatArray:
     """Travel (N,) [m] since the speed last changed its sign, at the middle of each sample."""
     _, steps_s = _samples(inputs)
@@ -151,6 +166,8 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "tread_acceleration": lambda inputs: _accelerations(inputs.tread_speeds_m_s, inputs.time_s),
     "other_tread_speed": lambda inputs: inputs.tread_speeds_m_s[:, ::-1],
     "tread_travel_since_reversal": _each_since_reversal,
+    "tread_speed_lost": lambda inputs: _changed(inputs, to_more=False),
+    "tread_speed_gained": lambda inputs: _changed(inputs, to_more=True),
     "time": lambda inputs: inputs.time_s,
     "time_since_stop": _since_stop,
     "mean_speed_before": lambda inputs: _mean_before(
@@ -175,4 +192,4 @@ SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
         np.abs(twist[:, 2]), inputs, MEAN_OVER_S
     ),
 }
-VARIABLES = (*RECORDED, *SIMULATED)
+VARIABLES = tuple(name for name in (*RECORDED, *SIMULATED) if name not in FURTHER)

@@ -17,6 +17,11 @@ class SmoothConfig:
         Smooth functions that are fitted in full where one is asked for: in full, those that leave
         least to first order seldom change their order. In the place of a name more are: what is
         large is far from its first order, and the fourth was the true one.
+    promising_further : int
+        The same where nothing has a name, and functions that are no rivals of names are tried, too.
+    tries_further : int
+        How often they are searched, each time without the variable that did not hold on held-out
+        data: each try may hold by chance in one of forty cases.
     beyond_first_order : float
         Share of what a name closes by which a smooth function may leave more to first order, and
         is fitted in its place all the same: the true one left 0.18 more, and 0.16 less in full.
@@ -27,6 +32,9 @@ class SmoothConfig:
         whose knots are even in its variable.
     nodes : tuple of int
         Of maps of what follows the place, at most; one grid of each number.
+    further_nodes, axis_nodes : int
+        Of a map where nothing has a name, and of a function of x or of y alone: furrows, waves of
+        the terrain and the grid of a map are some metres long.
     least_spacing_m : float
         Between nodes: positions of a reference are off by some centimetres.
     least_revisited : float
@@ -37,12 +45,16 @@ class SmoothConfig:
 
     promising: int = 2
     promising_in_place: int = 4
+    promising_further: int = 6
+    tries_further: int = 3
     beyond_first_order: float = 0.25
     least_range: float = 1e-3
     knots: int = 5
     tread_knots: int = 4
     even_knots: int = 9
     nodes: tuple[int, ...] = (16, 40)
+    further_nodes: int = 100
+    axis_nodes: int = 40
     least_spacing_m: float = 0.3
     least_revisited: float = 0.25
     most_smooth: int = 4

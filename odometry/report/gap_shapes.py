@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
 from odometry.effects.history import BOTH, History
-from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variables_of
+from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variable_of
 from odometry.effects.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.answer import WITHIN_95
 from odometry.gap.answer.result import GapResult, NamedEffect
@@ -71,12 +71,11 @@ def _span(result: GapResult, residual: Residual) -> tuple[float, float]:
         return residual.knots[0], residual.knots[-1]
     base = result.base
     twists = [base.model.twist(base.values, scene.inputs) for scene in result.measured_scenes]
-    recorded = np.concatenate(
-        [
-            variables_of(scene.inputs, twist)[residual.variable].ravel()
-            for scene, twist in zip(result.measured_scenes, twists, strict=True)
-        ]
-    )
+    of_scenes = [
+        variable_of(residual.variable, scene.inputs, twist)
+        for scene, twist in zip(result.measured_scenes, twists, strict=True)
+    ]
+    recorded = np.concatenate([values.ravel() for values in of_scenes if values is not None])
     low, high = np.quantile(recorded, [TAILS, 1 - TAILS])
     return float(low), float(high)
 

@@ -124,6 +124,8 @@ NAMES = {
     "tread_speed": "speed of each tread",
     "tread_acceleration": "acceleration of each tread",
     "other_tread_speed": "speed of the other tread",
+    "tread_speed_lost": "speed that each tread lost in the last 0.6 s",
+    "tread_speed_gained": "speed that each tread gained in the last 0.6 s",
     "tread_travel_since_reversal": "travel of each tread since it last reversed",
     "travel_since_reversal": "travel since the last reversal",
     "turn_before": "turn over the last metre",

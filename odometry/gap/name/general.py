@@ -47,15 +47,15 @@ def general_candidates(
         if name in WHAT_WENT_BEFORE:
             continue
         if name in ANGLES:
-            terms = _every(COMPONENTS, 2 * HARMONICS + 1)
+            terms = every(COMPONENTS, 2 * HARMONICS + 1)
             found += [Residual(name, terms, by) for by in ("", "speed")]
             continue
         if name in OF_TREADS:
-            found.append(Residual(name, _every(TREADS, len(knots)), "", knots))
+            found.append(Residual(name, every(TREADS, len(knots)), "", knots))
             continue
-        found.append(Residual(name, _every(COMPONENTS, len(knots)), "", knots))
+        found.append(Residual(name, every(COMPONENTS, len(knots)), "", knots))
         if name == "time":
-            found.append(Residual(name, _every(TREADS, len(knots)), "speed", knots))
+            found.append(Residual(name, every(TREADS, len(knots)), "speed", knots))
     return (*found, *maps(scenes, config))
 
 
@@ -72,10 +72,10 @@ def shares_of_motion(
     for name, knots in knots_of_variables(scenes, base, config).items():
         functions = len(knots) or 2 * HARMONICS + 1
         if name != "time":
-            found.append(Residual(name, _every(TREADS, functions), "speed", knots))
+            found.append(Residual(name, every(TREADS, functions), "speed", knots))
         if name in OF_TREADS:
             continue
-        found += [Residual(name, _every((part,), functions), part, knots) for part in WHOLE]
+        found += [Residual(name, every((part,), functions), part, knots) for part in WHOLE]
         found += _even_shares(name, knots, config)
     return tuple(found)
 
@@ -85,7 +85,7 @@ def _even_shares(name: str, knots: Sequence[float], config: GapConfig) -> list[R
     if not knots:
         return []
     evenly = tuple(map(float, np.linspace(knots[0], knots[-1], config.even_knots)))
-    return [Residual(name, _every((part,), len(evenly)), part, evenly) for part in WHOLE]
+    return [Residual(name, every((part,), len(evenly)), part, evenly) for part in WHOLE]
 
 
 def single_candidates(
@@ -105,13 +105,14 @@ def single_candidates(
             added += [(tread, "") for tread in TREADS]
         elif name != "time":
             added += MOTIONS
-        found += [Residual(name, _every((to,), functions), by, knots) for to, by in added]
+        found += [Residual(name, every((to,), functions), by, knots) for to, by in added]
         if name not in OF_TREADS and name != "time":
             found += _even_shares(name, knots, config)
     return tuple(found)
 
 
-def _every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], ...]:
+def every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], ...]:
+    """Terms of a smooth function: so many basis functions of each component."""
     return tuple((component, k) for component in components for k in range(functions))
 
 
@@ -138,13 +139,13 @@ def knots_of_variables(
     found = {}
     for name in shared:
         values = np.concatenate([of[name].ravel() for of in of_scenes])
-        knots = () if name in ANGLES else _knots(values, name, config)
+        knots = () if name in ANGLES else knots_of(values, name, config)
         if name in ANGLES or len(knots) > 1:
             found[name] = knots
     return found
 
 
-def _knots(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...]:
+def knots_of(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...]:
     """Even in the share of samples between them; none where the variable hardly varies.
 
     Those of a tread's motion are even about zero, where what drives do changes its sign.

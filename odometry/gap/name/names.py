@@ -18,6 +18,7 @@ from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import closes_less, lacks_essence
+from odometry.gap.name.further import Further
 from odometry.gap.name.general import general_candidates, shares_of_motion
 from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import Gap, root_mean_square
@@ -41,7 +42,7 @@ def explained(
     than a margin. At last each is evaluated on held-out data. `floors` are those of the measured
     and of the held-out windows.
     """
-    search = Standing(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
+    search = Further(fitter, fitter.fit([]), tuple(held_out), *floors, config, progress)
     scenes = fitter.measured.scenes
     quick = quick_effects(scenes, fitter.calibration)
     found = by_parts(search, by_fewer(search, search.stepwise(quick), quick), quick)
@@ -59,7 +60,8 @@ def explained(
     shares = shares_of_motion(scenes, fitter.calibration.base, config)
     stood = search.that_stand(_names_first(search, found), (*smooth, *shares))
     stood = _tried_again(search, of_names, stood, (*smooth, *shares))
-    return _largest_first(search, _of_the_others(search, stood, quick, (*smooth, *shares)))
+    stood = _of_the_others(search, stood, quick, (*smooth, *shares))
+    return search.further(_largest_first(search, stood))
 
 
 def _tried_again(

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.effects.residual import TREADS, WORLD
-from odometry.effects.residual_of_place import ResidualOfPlace
+from odometry.effects.residual_of_place import AXES, ResidualOfPlace
 from odometry.gap.config import GapConfig
 from odometry.windows.dense import DenseWindows
 
@@ -23,13 +23,26 @@ def maps(scenes: Sequence[DenseWindows], config: GapConfig) -> tuple[ResidualOfP
 
     None where the robot seldom comes back: what follows the place follows run time as well.
     """
+    return _of_grids(scenes, [(most, "") for most in config.nodes], config)
+
+
+def finer_maps(scenes: Sequence[DenseWindows], config: GapConfig) -> tuple[ResidualOfPlace, ...]:
+    """The same in more detail, and of x or of y alone."""
+    of_axes = [(config.axis_nodes, axis) for axis in AXES]
+    return _of_grids(scenes, [(config.further_nodes, ""), *of_axes], config)
+
+
+def _of_grids(
+    scenes: Sequence[DenseWindows], grids: Sequence[tuple[int, str]], config: GapConfig
+) -> tuple[ResidualOfPlace, ...]:
+    """Of each grid, given by its most nodes and its axis, one to each that it may be added to."""
     found: list[ResidualOfPlace] = []
     if any(scene.inputs.position_m is None for scene in scenes):
         return ()
     positions = np.concatenate([np.asarray(scene.inputs.position_m) for scene in scenes])
     pieces = _pieces(scenes, config.part_s)
-    for most in config.nodes:
-        grid = finest_grid(positions, most, config.least_spacing_m)
+    for most, axis in grids:
+        grid = finest_grid(positions, most, config.least_spacing_m, axis)
         if grid is None or _revisited(grid, positions, pieces) < config.least_revisited:
             continue
         for components, by in ADDED_TO:
@@ -38,12 +51,17 @@ def maps(scenes: Sequence[DenseWindows], config: GapConfig) -> tuple[ResidualOfP
     return tuple(found)
 
 
-def finest_grid(positions_m: FloatArray, most: int, least_m: float) -> ResidualOfPlace | None:
+def finest_grid(
+    positions_m: FloatArray, most: int, least_m: float, axis: str = ""
+) -> ResidualOfPlace | None:
     """The grid of the finest spacing that has so many nodes at most where the robot was."""
+    if axis:
+        positions_m = positions_m * [float(one == axis) for one in AXES]
     found: ResidualOfPlace | None = None
     spacing_m = float(np.ptp(positions_m, axis=0).max())
     while spacing_m >= least_m:
-        grid = ResidualOfPlace(spacing_m=spacing_m, nodes=_nodes(positions_m, spacing_m))
+        nodes = _nodes(positions_m, spacing_m)
+        grid = ResidualOfPlace(spacing_m=spacing_m, nodes=nodes, axis=axis)
         if len(grid.nodes) > most:
             break
         found, spacing_m = grid, spacing_m * float(FINER)

@@ -16,6 +16,7 @@ from odometry.gap.fit.sparse import sparse_residual
 from odometry.gap.name.candidates import contact_effects, of_the_same_robot
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form_gates import is_resolved, is_unbeaten
+from odometry.gap.name.general import general_candidates, single_candidates
 from odometry.gap.name.verdict import (
     Refusal,
     base_left_calibration,
@@ -42,6 +43,15 @@ class Search:
     progress: Callable[[], None]
     refusals: dict[str, Refusal] = field(default_factory=dict)
     without_essence: set[str] = field(default_factory=set)
+
+    @cached_property
+    def small_functions(self) -> tuple[Residual, ...]:
+        """Smooth functions of one variable, the same each time: a fit is done once."""
+        scenes, base = self.fitter.measured.scenes, self.fitter.calibration.base
+        return (
+            *single_candidates(scenes, base, self.config),
+            *general_candidates(scenes, base, self.config),
+        )
 
     def stepwise(
         self, candidates: Sequence[Effect], begun: Explanation | None = None

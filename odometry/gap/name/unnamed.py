@@ -22,7 +22,6 @@ from odometry.gap.fit.own_values import with_values_of_each_run
 from odometry.gap.name.events_at_places import chance_of_places
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import slow_course_instead
-from odometry.gap.name.general import general_candidates, single_candidates
 from odometry.gap.name.search import Search
 from odometry.gap.name.verdict import come_anywhere, come_by_themselves, leaves_noise
 from odometry.gap.prepare.measured import at_fewer_poses
@@ -79,18 +78,20 @@ def _follow_a_variable(search: Search, found: Explanation) -> str:
 
 def grown(search: Search, found: Explanation) -> Explanation:
     """Smooth functions alone, each of one variable, the best first."""
+    return grown_of(search, found, search.small_functions, search.config.promising)
+
+
+def grown_of(
+    search: Search, found: Explanation, candidates: Sequence[Residual], promising_at_most: int
+) -> Explanation:
+    """The same of some smooth functions, of which so many are fitted in full while none pays."""
     fitter, config = search.fitter, search.config
-    scenes, base = fitter.measured.scenes, fitter.calibration.base
-    candidates = (
-        *single_candidates(scenes, base, config),
-        *general_candidates(scenes, base, config),
-    )
     coarse = Fitter(fitter.calibration, at_fewer_poses(fitter.measured, fitter.calibration, POSES))
     found = replace(found, steps=())
     while len(found.steps) < config.most_smooth and search.has_excess(found.fitted):
         taken = {effect.key for effect in found.effects}
         left = [one for one in candidates if one.key not in taken]
-        promising = _most_promising_first(coarse, found.fitted, left)[: config.promising]
+        promising = _most_promising_first(coarse, found.fitted, left)[:promising_at_most]
         best = _first_earner(search, found.fitted, promising)
         if best is None:
             break

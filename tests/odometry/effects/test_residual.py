@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.effects.base import Effect
-from odometry.effects.residual import Residual, basis_of, variables_of
+from odometry.effects.residual import Residual, basis_of, variable_of, variables_of
 from odometry.effects.residual_of_each_run import ResidualOfEachRun
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
@@ -81,6 +81,19 @@ def test_each_tread_has_its_own_acceleration():
     found = variables_of(Inputs(speeds, time_s=time_s))["tread_acceleration"]
     inner = slice(10, -10)
     np.testing.assert_allclose(found[inner], np.tile([0.5, -0.25], (180, 1)), atol=0.06)
+
+
+def test_what_a_tread_lost_and_gained_in_speed_has_the_sign_of_its_motion():
+    """Forward it brakes from 1 to 0.4 m/s, backward it speeds up from 0.2 to 0.8 m/s."""
+    time_s = np.arange(0.0, 3.0, 0.05)
+    speeds = np.where(time_s[:, None] < 1.5, [1.0, -0.2], [0.4, -0.8])
+    inputs = Inputs(speeds, time_s=time_s)
+    lost, gained = (variable_of(f"tread_speed_{name}", inputs, None) for name in ("lost", "gained"))
+    soon = (time_s >= 1.5) & (time_s < 1.5 + 0.6)
+    np.testing.assert_allclose(lost, np.where(soon[:, None], [0.6, 0.0], 0.0), atol=1e-12)
+    np.testing.assert_allclose(gained, np.where(soon[:, None], [0.0, -0.6], 0.0), atol=1e-12)
+    assert not {"tread_speed_lost", "tread_speed_gained"} & set(variables_of(inputs))
+    assert variable_of("tread_speed_lost", Inputs(speeds), None) is None
 
 
 def test_what_follows_from_the_twist():

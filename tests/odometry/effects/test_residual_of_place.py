@@ -34,6 +34,20 @@ def test_far_from_every_node_it_adds_nothing():
     np.testing.assert_array_equal(effect.hats(np.array([[0.5, 0.0], [1.0, 1.0]])), 0.0)
 
 
+def test_along_one_axis_the_other_coordinate_does_nothing(positions_m):
+    nodes = tuple((0, j) for j in range(-1, 3))
+    effect = ResidualOfPlace(spacing_m=0.5, nodes=nodes, axis="y", terms=(("v_x", 0),))
+    hats = effect.hats(positions_m)
+    knots = [-0.5, 0.0, 0.5, 1.0]
+    oracle = [np.interp(positions_m[:, 1], knots, row) for row in np.eye(4)]
+    np.testing.assert_allclose(hats, np.transpose(oracle), atol=1e-14)
+    (read,) = added_effects([effect_table(Added(effect, np.array([0.1])))], "set")
+    assert read.effect == effect
+    assert effect.key != replace(effect, axis="").key
+    with pytest.raises(ParameterError, match="axis = 'z', expected one of x, y"):
+        replace(effect, axis="z")
+
+
 def test_it_adds_a_share_of_the_forward_speed_where_the_robot_is(bench, rng, positions_m):
     inputs = replace(bench.drive(rng).rows(slice(50)), position_m=positions_m)
     twist = bench.base.model.twist(bench.base.values, inputs)

@@ -15,7 +15,7 @@ from odometry.gap.answer.new_places import terrain_instead
 from odometry.gap.answer.result import Equivalent
 from odometry.gap.config import GapConfig
 from odometry.gap.name.events_at_places import chance_of_places
-from odometry.gap.name.places import maps
+from odometry.gap.name.places import finer_maps, maps
 from odometry.models.inputs import Inputs
 
 CONFIG = GapConfig()
@@ -48,6 +48,16 @@ def test_maps_cover_where_the_robot_was_with_as_many_nodes_as_they_may():
         assert one.hats(inputs.position_m).sum(axis=1).min() > 0.4
         components = {component for component, _ in one.terms}
         assert len(one.terms) == len(components) * len(one.nodes)
+
+
+def test_finer_maps_are_of_each_axis_alone_and_resolve_less_than_a_metre():
+    coarse, finer = (make([along(circle)], CONFIG) for make in (maps, finer_maps))
+    assert {one.axis for one in coarse} == {""}
+    assert {one.axis for one in finer} == {"", "x", "y"}
+    assert len({one.key for one in (*coarse, *finer)}) == len(coarse) + len(finer)
+    for one in finer:
+        assert one.spacing_m < min(of.spacing_m for of in coarse)
+        assert not one.axis or {node["yx".index(one.axis)] for node in one.nodes} == {0}
 
 
 def test_a_robot_that_never_comes_back_has_no_map():

@@ -1,0 +1,122 @@
+"""What has no name, searched further: by functions that are no rivals of names.
+
+A residual is no name. Here names are decided already, so that more may be tried, and what few
+held-out stretches leave open may be decided with the stretches measured, each of which was
+evaluated by a fit to the others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.effects.base_model import Base
+from odometry.effects.corrected import Added
+from odometry.effects.residual import TREADS, Residual
+from odometry.effects.residual_variables import FURTHER, variable_of
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.own_moments import with_own_moments
+from odometry.gap.name.accepted_effects import Standing
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.general import every, knots_of
+from odometry.gap.name.places import finer_maps
+from odometry.gap.name.unnamed import grown_of, with_course
+from odometry.gap.name.verdict import raises_measured, within_noise
+from odometry.gap.prepare.pieces import numbered_pieces
+from odometry.gap.prepare.simulate import whitened_residuals
+from odometry.gap.prepare.statistic import sure_sum
+from odometry.windows.dense import DenseWindows
+from odometry.windows.dense_noise import whitening
+
+
+@dataclass
+class Further(Standing):
+    """Keeps in `sure_with_measured` what few held-out stretches alone do not decide."""
+
+    sure_with_measured: list[Explanation] = field(default_factory=list)
+
+    def further(self, found: Explanation) -> Explanation:
+        """The explanation without a name that costs least on the measured runs; a name as it is.
+
+        Each must close some of the gap on held-out data, surely: by itself or, where that closes
+        half, together with the stretches measured.
+        """
+        is_open = found.steps or found.unexplained
+        if found.has_name or not is_open or self._held_out_left(found)[1] >= 1.0:
+            return found
+        options = [*self._tried_in_turn(found), *self.sure_with_measured]
+        best = min(
+            [one for one in (found, *options) if one.steps],
+            key=lambda one: one.fitted.cost,
+            default=None,
+        )
+        if best is None:
+            return found
+        return replace(found, steps=best.steps, unexplained=False, base_closes=False)
+
+    def _tried_in_turn(self, found: Explanation) -> list[Explanation]:
+        """Explanations that hold: where none does, without the variable that was the first."""
+        candidates = (
+            *self.small_functions,
+            *further_candidates(self.fitter.measured.scenes, self.config),
+        )
+        held = replace(found, steps=())
+        for _ in range(self.config.tries_further):
+            grown = grown_of(self, found, candidates, self.config.promising_further)
+            held = self._standing(grown, ())
+            if held.steps or self.sure_with_measured or not grown.steps:
+                break
+            tried = {one.variable for one in grown.effects[:1] if isinstance(one, Residual)}
+            candidates = tuple(one for one in candidates if one.variable not in tried)
+        return [self._standing(with_course(self, held), ())]
+
+    def _fails(self, found: Explanation) -> str:
+        reason = super()._fails(found)
+        if reason and not found.has_name and self._is_sure_with_measured(found):
+            self.sure_with_measured.append(found)
+        return reason
+
+    def _is_sure_with_measured(self, found: Explanation) -> bool:
+        """Whether it closes half of the gap held out, and some of all stretches together, surely.
+
+        Gains are of chi-squared: of measured stretches by fits to the others.
+        """
+        if (
+            self._held_out_left(found)[1] < self.config.least_of_rest
+            or within_noise(self._at_first(self.held_out), self.config)
+            or raises_measured(self._believed_gap(), self._gap(found.fitted), self.floor.measure)
+        ):
+            return False
+        fit, scenes = found.fitted, self.fitter.measured.scenes
+        believed = self.fitter.calibration
+        effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, believed)
+        before, after = (
+            self._by_piece(base, of, held_out)
+            for base, of in ((believed.base, ()), (fit.base, effects))
+        )
+        measured = self.fitter.by_piece(self.start.held_out - fit.held_out)
+        return sure_sum(np.concatenate([measured, before - after]), self.config.trimmed) > 0
+
+    def _by_piece(
+        self, base: Base, effects: Sequence[Added], scenes: Sequence[DenseWindows]
+    ) -> FloatArray:
+        """Chi-squared (P,) of the pieces of runs."""
+        whiteners = [whitening(scene, self.fitter.calibration.noise) for scene in scenes]
+        squares = whitened_residuals(base, effects, scenes, whiteners) ** 2
+        _, piece = np.unique(numbered_pieces(scenes, self.config.part_s), return_inverse=True)
+        rows = np.concatenate([np.full(len(s), s.rows_per_window) for s in scenes])
+        of_pieces = np.bincount(np.repeat(piece, rows), weights=squares)
+        return np.asarray(of_pieces, dtype=np.float64)
+
+
+def further_candidates(scenes: Sequence[DenseWindows], config: GapConfig) -> tuple[Residual, ...]:
+    """Functions of what treads lost or gained in speed, and of the place in more detail."""
+    found: list[Residual] = []
+    for name in FURTHER:
+        of_scenes = [variable_of(name, scene.inputs, None) for scene in scenes]
+        known = [np.ravel(values) for values in of_scenes if values is not None]
+        knots = knots_of(np.concatenate(known), name, config) if len(known) == len(scenes) else ()
+        for treads in (TREADS, *((tread,) for tread in TREADS)) if knots else ():
+            found += [Residual(name, every(treads, len(knots)), by, knots) for by in ("", "speed")]
+    return (*found, *finer_maps(scenes, config))

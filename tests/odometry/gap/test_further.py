@@ -1,0 +1,105 @@
+"""What has no name, searched further than rivals of names, and what few stretches leave open."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.effects.residual import Residual
+from odometry.effects.residual_variables import FURTHER
+from odometry.gap.config import GapConfig
+from odometry.gap.fit.contest import judge
+from odometry.gap.fit.fitter import Fitter
+from odometry.gap.name import accepted_effects, further
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.further import Further, further_candidates
+from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.statistic import floor_of
+
+CONFIG = GapConfig()
+ON_ROLL = Residual("roll", tuple(("v_x", k) for k in range(3)), "v_x", (-0.05, 0.0, 0.05))
+
+
+def lost_on_one_side(columns, twist):
+    """Forward speed that is lost with the right side down."""
+    share = 0.5 * np.clip(columns["roll"] / 0.05, 0.0, 1.0)
+    return twist * (1.0 - share[:, None] * [1.0, 0.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def scene(make_scene):
+    return make_scene(5, lost_on_one_side)
+
+
+@pytest.fixture(scope="module")
+def other(make_scene):
+    return make_scene(6, lost_on_one_side)
+
+
+@pytest.fixture
+def few_stretches(monkeypatch):
+    """What is held out alone leaves open whether anything gains."""
+    monkeypatch.setattr(accepted_effects, "closes_held_out", lambda *_: "may be chance")
+
+
+def searched(known, scene, held_out, residual=ON_ROLL):
+    """A search, and the explanation by one smooth function."""
+    fitter = Fitter(known, measured_of([scene], known, CONFIG))
+    floor = floor_of(known.held_back, CONFIG.part_s)
+    search = Further(fitter, fitter.fit([]), (held_out,), floor, floor, CONFIG, lambda: None)
+    steps = judge(fitter, search.start, [residual], CONFIG, lambda: None)
+    return search, Explanation(search.start, tuple(steps), ())
+
+
+@pytest.mark.usefixtures("few_stretches")
+def test_what_few_stretches_leave_open_the_measured_ones_decide(known, scene, other):
+    search, found = searched(known, scene, other)
+    assert search._fails(found) == "may be chance"
+    assert search.sure_with_measured == [found]
+    kept = search.further(Explanation(search.start, (), (), unexplained=True))
+    assert kept.steps
+    assert kept.fitted.cost <= found.fitted.cost
+    assert not kept.unexplained
+
+
+@pytest.mark.usefixtures("few_stretches")
+def test_what_closes_less_than_half_there_is_left_out(known, scene, other):
+    """On the measured runs it gains as surely as before."""
+    search, found = searched(known, scene, other)
+    added = found.fitted.effects[0]
+    small = replace(found.fitted, effects=(replace(added, values=0.2 * added.values),))
+    part = replace(found, steps=(replace(found.steps[0], fitted=small),))
+    assert search._fails(part)
+    assert search.sure_with_measured == []
+
+
+def test_without_a_gap_nothing_is_searched_further(known, make_scene, monkeypatch):
+    still = make_scene(8)
+    search, found = searched(known, still, make_scene(9))
+    monkeypatch.setattr(further, "grown_of", None)
+    assert not search._is_sure_with_measured(found)
+    nothing = Explanation(search.start, (), ())
+    assert search.further(nothing) is nothing
+
+
+def test_what_is_tried_further_is_no_rival_of_names(known, scene):
+    more = further_candidates([scene], CONFIG)
+    assert set(FURTHER) < {one.variable for one in more}
+    search, _ = searched(known, scene, scene)
+    assert not set(FURTHER) & {one.variable for one in search.small_functions}
+    assert len({one.key for one in (*more, *search.small_functions)}) > len(more)
+
+
+def test_after_a_variable_that_does_not_hold_another_is_tried(known, scene, other, monkeypatch):
+    search, found = searched(known, scene, other)
+    offered = []
+
+    def grown(_, begun, candidates, __):
+        offered.append({one.variable for one in candidates})
+        return found if len(offered) == 1 else replace(begun, steps=())
+
+    monkeypatch.setattr(further, "grown_of", grown)
+    monkeypatch.setattr(Further, "_standing", lambda _, begun, __: replace(begun, steps=()))
+    monkeypatch.setattr(further, "with_course", lambda _, begun: begun)
+    search.further(Explanation(search.start, (), (), unexplained=True))
+    assert offered[0] - offered[1] == {"roll"}
