@@ -90,7 +90,7 @@ class Residual(MotionEffect):
     equation = "twist + sum of c_ij basis_j(variable)"
     source = "none: no effect of the catalogue explains it"
     looks_like = "errors that follow the variable"
-    remedy = "look for a cause that depends on this"
+    remedy = "look for a cause that depends on its variable"
     needs = "the variable"
 
     @property

@@ -123,7 +123,8 @@ def _print_result(result: "GapResult") -> None:
         for effect in result.effects
     ]
     others = [one.name for one in result.equivalent if one.instead_of == result.verdict]
-    click.echo(f"Verdict: {listed([result.verdict, *others], 'or')}")
+    as_well = f", which these runs do not distinguish from {listed(others, 'or')}" if others else ""
+    click.echo(f"Verdict: {result.verdict}{as_well}")
     if result.effects:
         print_table(rows)
     for sentence in sentences(result):

@@ -20,7 +20,7 @@ def is_the_effect(fit: Fitted, config: GapConfig) -> str:
     if reason := is_meant(added):
         return reason
     if not is_there(fit, config):
-        return f"{added.effect.name} cannot be distinguished from none"
+        return "its values do not surely differ from those of no effect"
     return within_bounds(fit, config)
 
 

@@ -78,7 +78,7 @@ def is_sure_of_its_essence(
     if rise > (config.surely if spans_none else config.sure) ** 2:
         return ""
     names = ", ".join(added.effect.essential)
-    return f"{names}, which makes it this effect, cannot be distinguished from none"
+    return f"{names}, which makes it this effect, does not surely differ from none at all"
 
 
 def is_most_of(closed: float, by_function: float, config: GapConfig) -> bool:

@@ -40,18 +40,19 @@ class Further(Standing):
         """The explanation without a name that costs least on the measured runs; a name as it is.
 
         Each must close some of the gap on held-out data, surely: by itself or, where that closes
-        half, together with the stretches measured.
+        half, together with the stretches measured; and more of it than what there was.
         """
-        is_open = found.steps or found.unexplained
-        if found.has_name or not is_open or self._held_out_left(found)[1] >= 1.0:
+        is_closed = found.steps or found.base_closes
+        share = self._held_out_left(found)[1] if is_closed else 0.0
+        if found.has_name or not (found.steps or found.unexplained) or share >= 1.0:
             return found
-        options = [*self._tried_in_turn(found), *self.sure_with_measured]
-        best = min(
-            [one for one in (found, *options) if one.steps],
-            key=lambda one: one.fitted.cost,
-            default=None,
-        )
-        if best is None:
+        options = [
+            one
+            for one in (*self._tried_in_turn(found), *self.sure_with_measured)
+            if one.steps and self._held_out_left(one)[1] > share
+        ]
+        best = min([found, *options], key=lambda one: one.fitted.cost)
+        if best is found:
             return found
         return replace(found, steps=best.steps, unexplained=False, base_closes=False)
 

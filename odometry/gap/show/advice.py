@@ -6,7 +6,9 @@ from odometry.checks.warned import sensor_faults
 from odometry.effects.drive_limit import DriveLimit
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.residual import Residual
 from odometry.gap.answer.result import GapResult
+from odometry.gap.show.unknown import how_to_separate, where_to_look
 
 # Findings of the check, and the effects of which they are no rivals but the same.
 SAME = {
@@ -48,8 +50,12 @@ def _remedy(result: GapResult) -> str:
         return _of_nothing(result)
     if result.verdict == "unknown" and not result.depends_on:
         return "Look at the worst stretches in report.html, and record what may differ there."
-    remedies = dict.fromkeys(effect.added.effect.remedy for effect in result.effects)
-    return f"{'; '.join(remedies)}.".capitalize()
+    effects = [effect.added.effect for effect in result.effects]
+    unknown = [effect for effect in effects if isinstance(effect, Residual)]
+    remedies = [effect.remedy for effect in effects if not isinstance(effect, Residual)]
+    said = "; ".join(dict.fromkeys([*remedies, *where_to_look(unknown)]))
+    apart = how_to_separate(unknown)
+    return f"{said[0].upper()}{said[1:]}.{' ' if apart else ''}{apart}"
 
 
 def _of_nothing(result: GapResult) -> str:

@@ -68,8 +68,12 @@ def _where(result: GapResult) -> Iterator[str]:
     found = [noun_of(one.name) for one in location.predictors if one.discovered]
     if found:
         more = len(found) - VARIABLES
-        others = f", and {more} more that go with them" if more > 0 else ""
-        yield f"What predicts the disagreement: {', '.join(found[:VARIABLES])}{others}."
+        others = f", and {more} more" if more > 0 else ""
+        several = " They go together in these runs: none of them need be the cause."
+        yield (
+            f"What predicts the disagreement: {', '.join(found[:VARIABLES])}{others}."
+            f"{several if len(found) > 1 else ''}"
+        )
     elif location.predictors:
         yield "None of the recorded variables predicts the disagreement beyond chance."
     for number, region in enumerate(location.regions[:REGIONS]):

@@ -6,6 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.effects.corrected import Added
+from odometry.effects.history import HISTORY
+from odometry.effects.residual import VARIABLES, Residual
+from odometry.effects.residual_of_place import PLACE, ResidualOfPlace
+from odometry.effects.residual_variables import FURTHER
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.time_offset import TimeOffset
 from odometry.gap.answer.next_drives import NextDrive
@@ -19,6 +23,7 @@ from odometry.gap.show.quantities import (
     percent,
     with_interval,
 )
+from odometry.gap.show.unknown import DRIVES, how_to_separate, where_to_look
 from odometry.gap.show.words import sentences
 
 
@@ -199,7 +204,27 @@ def test_unknown_says_what_it_depends_on_and_what_is_left(unknown_result):
     )
     left = unknown_result.holdout.after.value - unknown_result.holdout.noise_floor.value
     assert f"{left:.2g} m stays unexplained" in said[1]
-    assert said[2] == "Look for a cause that depends on this."
+    assert said[2] == "Look for a cause that depends on heading."
+
+
+def test_several_variables_are_said_to_go_together_with_drives_that_separate_them():
+    names = ("heading", "time_since_stop", "tread_speed_lost")
+    residuals = [Residual(name) for name in names]
+    assert where_to_look([*residuals, residuals[0], ResidualOfPlace(nodes=((0, 0),))]) == [
+        "look for a cause that depends on heading",
+        "look for a cause that depends on time since the last stop",
+        "look for a cause that depends on speed that each tread lost in the last 0.6 s",
+        ResidualOfPlace.remedy,
+    ]
+    assert how_to_separate(residuals).endswith(
+        "drive for a minute each: straight lines on several headings; one speed, with and without "
+        "stops and reversals."
+    )
+    assert how_to_separate([residuals[0], residuals[0]]) == ""
+
+
+def test_every_variable_has_a_drive_that_separates_it():
+    assert set(DRIVES) == {*VARIABLES, *FURTHER, PLACE, HISTORY}
 
 
 def test_an_effect_by_which_the_ends_come_no_nearer_says_what_does(scaled_result):
