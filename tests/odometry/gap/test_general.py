@@ -16,7 +16,7 @@ from odometry.effects.residual import (
     variables_of,
 )
 from odometry.effects.residual_of_place import PLACE
-from odometry.effects.residual_variables import WHAT_WENT_BEFORE
+from odometry.effects.residual_variables import FURTHER, WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
 from odometry.gap.name.general import general_candidates, shares_of_motion, single_candidates
 
@@ -71,7 +71,7 @@ def test_of_every_other_variable_at_knots_within_its_values(found, scenes, known
 
 
 def test_a_tread_follows_its_own_motion_on_both_sides_of_rest(found):
-    for name in set(OF_TREADS) - set(WHAT_WENT_BEFORE):
+    for name in set(OF_TREADS) - {*WHAT_WENT_BEFORE, *FURTHER}:
         (one,) = [other for other in found if other.variable == name]
         assert {component for component, _ in one.terms} == set(TREADS)
         np.testing.assert_allclose(one.knots, -np.flip(one.knots))
