@@ -50,7 +50,7 @@ class Residual(MotionEffect):
     Attributes
     ----------
     variable : str
-        A name of `variables_of`.
+        A name of `variables_of`, or one of `FURTHER`.
     terms : tuple of (str, int)
         Component of the twist or of a velocity over the world, or "left" or "right" of the
         treads, and number of the basis function.

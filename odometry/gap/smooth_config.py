@@ -4,7 +4,15 @@ from dataclasses import dataclass
 
 from odometry.config import require, require_positive
 
-FEWEST = {"knots": 2, "even_knots": 2, "tread_knots": 1}
+FEWEST = {
+    "knots": 2,
+    "even_knots": 2,
+    "tread_knots": 1,
+    "further_nodes": 2,
+    "axis_nodes": 2,
+    "promising_further": 1,
+    "tries_further": 1,
+}
 
 
 @dataclass(frozen=True)
