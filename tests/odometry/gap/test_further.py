@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.effects.history import History
 from odometry.effects.residual import Residual
-from odometry.effects.residual_variables import FURTHER
+from odometry.effects.residual_of_place import ResidualOfPlace
+from odometry.effects.residual_variables import FURTHER, VARIABLES
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter
@@ -15,6 +17,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.further import Further, further_candidates
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import floor_of
+from odometry.gap.show.unknown import DRIVES
 
 CONFIG = GapConfig()
 ON_ROLL = Residual("roll", tuple(("v_x", k) for k in range(3)), "v_x", (-0.05, 0.0, 0.05))
@@ -103,3 +106,20 @@ def test_after_a_variable_that_does_not_hold_another_is_tried(known, scene, othe
     monkeypatch.setattr(further, "with_course", lambda _, begun: begun)
     search.further(Explanation(search.start, (), (), unexplained=True))
     assert offered[0] - offered[1] == {"roll"}
+
+
+@pytest.mark.parametrize(("share", "is_taken"), [(0.55, False), (0.65, True)])
+def test_what_closes_less_than_what_there_is_does_not_take_its_place(
+    known, scene, other, monkeypatch, share, is_taken
+):
+    search, found = searched(known, scene, other)
+    there = Explanation(search.start, (), (), base_closes=True)
+    search.sure_with_measured.append(found)
+    monkeypatch.setattr(Further, "_tried_in_turn", lambda *_: [])
+    monkeypatch.setattr(Further, "_held_out_left", lambda _, one: (0, share if one.steps else 0.6))
+    assert bool(search.further(there).steps) is is_taken
+
+
+def test_every_variable_has_a_drive_that_separates_it():
+    names = {*VARIABLES, *FURTHER, History.variable, ResidualOfPlace.variable}
+    assert names <= set(DRIVES)
