@@ -110,10 +110,10 @@ def test_after_a_variable_that_does_not_hold_another_is_tried(known, scene, othe
 
 @pytest.mark.parametrize(("share", "is_taken"), [(0.55, False), (0.65, True)])
 def test_what_closes_less_than_what_there_is_does_not_take_its_place(
-    known, scene, other, monkeypatch, share, is_taken
+    known, scene, monkeypatch, share, is_taken
 ):
-    search, found = searched(known, scene, other)
-    there = Explanation(search.start, (), (), base_closes=True)
+    search, found = searched(known, scene, scene)
+    there = Explanation(search.start, (), (), unexplained=True, base_closes=True)
     search.sure_with_measured.append(found)
     monkeypatch.setattr(Further, "_tried_in_turn", lambda *_: [])
     monkeypatch.setattr(Further, "_held_out_left", lambda _, one: (0, share if one.steps else 0.6))
