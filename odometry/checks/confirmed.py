@@ -11,12 +11,14 @@ from odometry.checks.undo import Mend, between, in_turn
 from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
-LOST = "stuck_encoder"  # its time is left out: what then differs was not of the tread
-SLIP = "slip"  # cannot be undone: what differs must be such as slip explains
+# Their time is left out: what then differs was not of the treads in it.
+LOST = frozenset({"stuck_encoder", "treads_frozen", "turn_blocked"})
+# Cannot be undone: what differs must be such as slip, or a constant rate, explains.
+SLIP = frozenset({"slip", "gyroscope_bias"})
 DISAGREE = "sensors_disagree"
 # Of two sensors, and true only where these agree otherwise; nothing undoes them.
 OF_AGREEMENT = frozenset(
-    {SLIP, "slip_in_turns", "track_width", "treads_not_proportional", "position_axes"}
+    {*SLIP, "slip_in_turns", "track_width", "treads_not_proportional", "position_axes"}
     | {"smoothed_poses", "treads_unsigned"}
 )
 AROUND_S = 2.0  # of such a moment that is left out
@@ -57,26 +59,24 @@ def _notes(found: Iterable[Finding]) -> list[Finding]:
     return [finding for finding in found if finding.level is Level.NOTE]
 
 
-def confirmed(
-    evidence: Evidence, found: Sequence[Finding], seen: Sequence[Finding], find: Found
-) -> list[Finding]:
+def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
     """The findings; causes that leave the sensors apart when they are undone are named no more.
 
     All of them are undone together: columns and stamps are mended, the recording is cut at jumps,
     and stretches that other findings name are left out. What stays is compared in absolute terms:
     it is not enough that it is less than before. Where they fail together, one of them may be
-    the only one: a turn that is reversed seems to be late where the drive repeats itself. What was
-    `seen` to disagree beside them must be gone as well.
+    the only one: a turn that is reversed seems to be late where the drive repeats itself. The
+    recording with all of them undone must pass the check as well.
     """
     warnings = _warnings(found)
     causes = [finding for finding in warnings if finding.mend is not None]
     jumps = [finding for finding in warnings if finding.name in MOMENTS]
     others = [f for f in warnings if f not in causes and f not in jumps]
     spans = tuple(span for finding in others for span in finding.spans_s)
-    lost = [finding for finding in others if finding.name == LOST]
+    lost = [finding for finding in others if finding.name in LOST]
     factors = [finding for finding in others if finding.name in OF_AGREEMENT]
     if not causes and not jumps and not lost:
-        slips = [finding for finding in factors if finding.name == SLIP]
+        slips = [finding for finding in factors if finding.name in SLIP]
         apart = against_slip(evidence) if slips else []
         return _unnamed(found, factors, apart) if apart else list(found)
     mends: list[Mend] = [finding.mend for finding in causes if finding.mend is not None]
@@ -87,7 +87,7 @@ def confirmed(
     if cuts:  # jumps are outliers of the whole, parts may be short
         more = scales_apart(whole), strange_part(whole, cuts)
         left = list(dict.fromkeys([*left, *filter(None, more)]))
-    elif not left and mends and any(finding.name == DISAGREE for finding in seen):
+    elif not left and mends and not factors:  # which cannot be undone
         left = [finding.seen for finding in find(whole) if finding.name == DISAGREE]
     only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
     if only is not None:

@@ -1,6 +1,7 @@
 """Whether a factor is the same at each speed, direction and place, as a scale is."""
 
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -20,6 +21,8 @@ LIKE = (1.1, 1.3)  # ratio of factors: slip leaves the smaller one, above the la
 UNEQUAL = 1.15
 HELD = 0.9  # share of the turns explained where terrain holds
 TURNS_LIKE = (1.22, 1.5)  # the same of turns, on the straight and elsewhere, slow and fast
+PLACES_LIKE = 1.15  # the same at two places of the map; of 11 real recordings at most 1.06
+PLACES_LEAVE = 0.85  # share of what one factor leaves that two factors by place leave at most
 Groups = Iterator[tuple[tuple[str, str], BoolArray, BoolArray]]
 
 
@@ -58,8 +61,41 @@ def uneven_gyroscope(evidence: Evidence, factor: float) -> str:
     """Where the gyroscope is no constant `factor` of the measured turns; "" where it may be."""
     m = evidence.turn_motion
     fits = evidence.pose_turn_rad, m.gyroscope_rad, m.lasts_s
-    found = _uneven(_of_way(m), *fits, most=ratio_left(factor))
+    groups = chain(_of_way(m), _of_rates(m))
+    found = _uneven(groups, *fits, most=ratio_left(factor))
     return f"a radian of the gyroscope is one of the poses times {found}" if found else ""
+
+
+def uneven_yaw(evidence: Evidence) -> str:
+    """Where gyroscope and measured yaw, of one scale or another, do not keep to it."""
+    known = evidence.yaw_measured and evidence.pose_turn_by_gyroscope is not None
+    return uneven_gyroscope(evidence, 1.0) if known else ""
+
+
+def uneven_map(evidence: Evidence) -> str:
+    """Where a metre of the treads is surely farther at one place of the map than at others."""
+    m = evidence.motion
+    plain = evidence.forward_by_mean
+    if evidence.heading is None or plain is None:
+        return ""
+    found = _uneven(
+        (
+            group
+            for group in _of_place(m)
+            if _left_by(evidence, group[1]) < PLACES_LEAVE * (1 - plain.explained)
+        ),
+        evidence.forward_m,
+        m.mean_m,
+        most=PLACES_LIKE,
+    )
+    return f"a metre of tread travel moves the robot by {found}" if found else ""
+
+
+def _left_by(evidence: Evidence, first: BoolArray) -> float:
+    """Share of the way that is left by one factor for some of the windows (K,), one for others."""
+    m = evidence.motion
+    fit = relation(evidence.forward_m, *(np.where(of, m.mean_m, 0.0) for of in (first, ~first)))
+    return np.inf if fit is None else 1 - fit.explained
 
 
 def ratio_left(factor: float, like: tuple[float, float] = LIKE) -> float:
@@ -101,14 +137,34 @@ def _of_way(motion: Motion) -> Groups:
     for degrees in (0, 45):
         along = np.cos(2 * (motion.course_rad - np.radians(degrees))) > 0
         yield (f"along {degrees} degrees of the map", "across"), moving & along, moving & ~along
+    yield from _of_place(motion)
+
+
+def _of_place(motion: Motion) -> Groups:
+    _, moving = _fast(motion)
     place = np.nancumsum(motion.moved_m, axis=0)
-    for words, at in (
-        (("at small x", "at large x"), place[:, 0]),
-        (("at small y", "at large y"), place[:, 1]),
-        (("near its start", "far from it"), np.hypot(*place.T)),
+    middle = np.hypot(*(place - place.mean(axis=0)).T)
+    for words, at, share in (
+        (("at small x", "at large x"), place[:, 0], 0.5),
+        (("at small y", "at large y"), place[:, 1], 0.5),
+        (("near its start", "far from it"), np.hypot(*place.T), 0.5),
+        (("near the middle of the map", "at its border"), middle, 0.5),
+        (("near the middle of the map", "at its border"), middle, 0.75),
     ):
-        near = at < np.median(at)
+        near = at < np.quantile(at, share)
         yield words, moving & near, moving & ~near
+
+
+def _of_rates(motion: Motion) -> Groups:
+    """Slow and sharp turns, and to either side, by the gyroscope: treads may be at fault."""
+    rates = motion.gyroscope_rad / motion.lasts_s
+    if not np.isfinite(rates).any():
+        return
+    size = np.abs(rates)
+    turning = size > MOVING * np.nanquantile(size, 0.95)
+    sharp = size > np.median(size[turning]) if turning.any() else turning
+    yield ("in slow turns", "in sharp ones"), turning & ~sharp, turning & sharp
+    yield ("in turns to the left", "to the right"), turning & (rates > 0), turning & (rates < 0)
 
 
 def _of_turns(motion: Motion) -> Groups:
@@ -122,4 +178,4 @@ def _fast(motion: Motion) -> tuple[BoolArray, BoolArray]:
     """Windows (K,) that are faster than half of those that move, and those that move."""
     faster = np.maximum(np.abs(motion.left_m), np.abs(motion.right_m)) / motion.lasts_s
     moving = faster > MOVING * np.quantile(faster, 0.95)
-    return faster > np.median(faster[moving]), moving
+    return faster > (np.median(faster[moving]) if moving.any() else 0.0), moving

@@ -6,11 +6,13 @@ import numpy as np
 
 from odometry.checks.beyond_slip import beyond_slip
 from odometry.checks.carried import carried_along
+from odometry.checks.constancy import uneven_map, uneven_yaw
 from odometry.checks.course_offsets import course_apart, yaw_wanders
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.gyroscope import drifts_at_rest
 from odometry.checks.heading_spans import heading_spans
+from odometry.checks.little_explained import little_explained
 from odometry.checks.position_differences import (
     paths_apart,
     positions_apart,
@@ -18,7 +20,9 @@ from odometry.checks.position_differences import (
 )
 from odometry.checks.proportion import holds_the_mean, one_side_not_proportional, treads_unlike
 from odometry.checks.relation import Relation
+from odometry.checks.repeated_rows import repeated_rows
 from odometry.checks.scale_drift import scale_drifts
+from odometry.checks.tread_samples import peaks_often
 from odometry.checks.turn_signs import Sense, gyroscope_sense, lasting_turn_rad, pose_sense
 from odometry.checks.turns_in_parts import turns_flip
 from odometry.checks.yaw_drift import course_drifts
@@ -33,11 +37,11 @@ def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[F
     """One warning where sensors differ and nothing `found` explains it."""
     if any(finding.level is not Level.NOTE for finding in found):
         return
-    seen = lasting_disagreements(evidence)
+    seen = [*lasting_disagreements(evidence), uneven_map(evidence), peaks_often(evidence)]
     if not any(finding.name == "slip_episodes" for finding in found):
-        seen += [words for words in [positions_apart(evidence)] if words]
-    if seen:
-        yield disagreement("; ".join(seen))
+        seen.append(positions_apart(evidence))
+    if any(seen):
+        yield disagreement("; ".join(filter(None, seen)))
 
 
 def lasting_disagreements(evidence: Evidence) -> list[str]:
@@ -55,14 +59,23 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         scale_drifts(evidence),
         carried_along(evidence),
         beyond_slip(evidence),
+        uneven_yaw(evidence),
         *treads_unlike(evidence),
+        repeated_rows(evidence),
+        *little_explained(evidence),
     )
     return [words for words in seen if words]
 
 
 def against_slip(evidence: Evidence) -> list[str]:
     """By what sensors differ, of what no slip of the treads explains."""
-    seen = scales_apart(evidence), headings_apart(evidence), beyond_slip(evidence)
+    seen = (
+        scales_apart(evidence),
+        headings_apart(evidence),
+        beyond_slip(evidence),
+        uneven_yaw(evidence),
+        *little_explained(evidence),
+    )
     return [words for words in seen if words]
 
 
@@ -102,9 +115,9 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             f"{evidence.pose_turn_by_treads.correlation:.2f})"
             if evidence.pose_turn_by_treads
             else "",
-            "pose.csv is of another recording or another clock, its rows are out of order, or its "
-            "yaw is no heading (the course over ground, a component of a quaternion, another axis, "
-            f"noise){'' if gyroscope is Sense.AGREES else OR_TREADS}",
+            "pose.csv or odometry.csv is of another recording or another clock, its rows are out "
+            "of order, or yaw is no heading (the course over ground, a component of a quaternion, "
+            f"another axis, noise){'' if gyroscope is Sense.AGREES else OR_TREADS}",
             "Plot the three yaw rates: check --picture",
         )
     elif gyroscope is unrelated and _moves(evidence.gyroscope_by_treads) and not together:

@@ -17,6 +17,8 @@ FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
 TURNED_RAD = 0.3  # in a gap: the robot drove on, however little it moved
+BEFORE, CLOSER = 40, 0.9  # rows before a gap, and their period as a share of the usual one
+CLOSER_ROWS = "; or their stamps are wrong: rows before it come closer together than elsewhere"
 STOOD = 0.3  # share of the motion at the held speed below which the robot stood: the clock was set
 
 
@@ -43,7 +45,8 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             lost,
             level=Level.NOTE if of_changes else Level.WARNING,
             reason=reason,
-            cause="Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)",
+            cause="Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)"
+            + CLOSER_ROWS * any(_is_closer_before(evidence, begin_s) for begin_s, _ in lost),
             remedy="Windows do not cross it; cut with --from and --to",
         )
     if clock:
@@ -98,6 +101,12 @@ def _finding(
         remedy,
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans_s),
     )
+
+
+def _is_closer_before(evidence: Evidence, begin_s: float) -> bool:
+    last = int(np.searchsorted(evidence.stamps_s, begin_s))
+    periods_s = np.diff(evidence.stamps_s[max(last - BEFORE, 0) : last + 1])
+    return len(periods_s) > 0 and float(np.median(periods_s)) < CLOSER * evidence.period_s
 
 
 def _clock_was_set(evidence: Evidence, span_s: FloatArray) -> bool:

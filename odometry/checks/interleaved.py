@@ -37,7 +37,7 @@ def interleaved(evidence: Evidence) -> Iterator[Finding]:
                 f"{name} leaps away and back from row to row in {100 * leaps.mean():.0f} % of the "
                 "rows, as if along two courses in turn",
                 "Rows of two sources are mixed in odometry.csv (two topics or publishers, two "
-                "robots, commands beside measured speeds, two recordings)",
+                "robots, commands beside measured speeds, two recordings), or out of order",
                 "Write the rows of one source alone; its stamps tell them apart",
             )
             return

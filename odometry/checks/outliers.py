@@ -7,6 +7,7 @@ from odometry.windows.spans import runs_of
 
 NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)
 OF_FASTEST = 0.6  # and by this share of the ordinary fastest value (99 in 100)
+OF_FASTEST_ALONE, BACK = 0.5, 0.5  # the same of one sample, and how near its neighbours are
 LONGEST = 3  # samples of a spike or poses of an outlier: a longer one is a jump
 FAR_TIMES = 20.0  # a placeholder (-999) for what was not measured is so far above all speeds
 MOST_FAR = 0.1  # share of the samples
@@ -54,6 +55,18 @@ def _far_off(values: FloatArray) -> BoolArray:
         return np.zeros(len(values), dtype=np.bool_)
     far = np.abs(values) > top[gaps[-1]]
     return far if np.diff(runs_of(far), axis=1).max() <= LONGEST else np.zeros_like(far)
+
+
+def peaks(values: FloatArray, fastest: float) -> BoolArray:
+    """Which samples (N,) alone go out and back by half of the fastest value, however often.
+
+    Zeros are no peaks: samples may be lost.
+    """
+    off = values[1:-1] - np.stack([values[:-2], values[2:]])
+    least = np.abs(off).min(axis=0)
+    alone = (off[0] * off[1] > 0) & (least > OF_FASTEST_ALONE * fastest)
+    alone &= (np.abs(off[0] - off[1]) < BACK * least) & (values[1:-1] != 0)
+    return np.concatenate([[False], alone, [False]])
 
 
 def without_spikes(values: FloatArray) -> FloatArray:

@@ -132,7 +132,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     with np.errstate(over="ignore", invalid="ignore"):
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
-        confirmed_ones = confirmed(evidence, without_consequences(found), found, _found)
+        confirmed_ones = confirmed(evidence, without_consequences(found), _found)
     findings = in_order([*copies, *confirmed_ones])
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 

@@ -14,6 +14,7 @@ from odometry.checks.undo import Mend, changed, treads_times
 
 LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations
+LEFT = 0.6  # share of the squares of what treads do not explain that an offset leaves at most
 ARM = 0.5  # of the way along: more than an arm of the sensor adds to one tread
 LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
 TOO_LITTLE = 1.1  # metres moved for each of the mean tread travel, which no slip makes
@@ -138,8 +139,11 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     if _reads_zero(evidence) or not evidence.yaw_measured or not turns_both_ways(m):
         return
     turn = relation(evidence.pose_turn_rad, m.left_m, m.right_m, m.lasts_s)
+    plain = relation(evidence.pose_turn_rad, m.left_m, m.right_m)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
         return
+    if plain is not None and 1 - turn.explained > LEFT * (1 - plain.explained):
+        return  # it explains little of what the treads do not
     offset = float(turn.coefficients[2] / np.mean(np.abs(turn.coefficients[:2])))
     if abs(offset) < LEAST_OFFSET_M_S:
         return

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
-from odometry.checks.outliers import spikes
+from odometry.checks.outliers import peaks, spikes
 from odometry.checks.treads import step_of
 from odometry.checks.undo import TREADS, changed, in_turn
 from odometry.windows.spans import runs_of
@@ -15,6 +15,7 @@ from odometry.windows.spans import runs_of
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 # Share of the speeds in motion that are slower than those beside zeros: of lost messages a half.
 FEW, SLOWEST = 20, 0.15
+PEAKS = 0.004  # share of the samples; 0.0003 of real recordings
 STOP_S = 0.3  # no robot stops and is at full speed again within
 STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 LEAST_SAME, SAME = 8, 0.5  # rows of one value, their share of all that are alone and of that value
@@ -50,6 +51,18 @@ def _absurd(evidence: Evidence) -> Iterator[Finding]:
                 (evidence.run_time_s(s), evidence.run_time_s(s)) for s in evidence.stamps_s[rows]
             ),
         )
+
+
+def peaks_often(evidence: Evidence) -> str:
+    """Words where single samples often go out and back as no robot drives; "" elsewhere."""
+    odometry = evidence.run.odometry
+    counts = [int(peaks(odometry[name], evidence.fastest_m_s).sum()) for name in TREADS]
+    if evidence.period_s > STOP_S or sum(counts) < max(FEW, PEAKS * 2 * len(odometry)):
+        return ""
+    return (
+        f"tread speeds go out and back by more than half of the ordinary fastest speed in "
+        f"{counted(sum(counts), 'single sample')} (v_left {counts[0]}, v_right {counts[1]})"
+    )
 
 
 def _dropped(evidence: Evidence) -> Iterator[Finding]:

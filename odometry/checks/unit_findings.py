@@ -10,6 +10,7 @@ from odometry.checks.motion import scattered
 from odometry.checks.relation import relation
 from odometry.checks.undo import gyroscope_times, times, treads_times
 from odometry.checks.unit_tables import (
+    COUNTS,
     EQUAL,
     ORDINARY_FORWARD,
     RADII_M,
@@ -26,8 +27,6 @@ STEADY = 0.98  # correlation from which a factor on straight lines is constant
 DEGREES = 0.07  # logarithm of a factor by 180 / pi, as poses measure it; gradians are 0.105 off
 HALF_ANGLE = 0.07  # the same, by 2
 STRAIGHT = 0.05  # way of an arm in a turn, as a share of the way of the robot
-
-
 WATCH = ", if that is it: compare with a turn by hand, and the duration with a watch"
 AS_MUCH = 0.1  # logarithm by which the way of the treads may be off the ordinary one by the factor
 SLIP_OR_TRACK = "there is heavy slip in turns (snow), or a wrong track_width"
@@ -125,13 +124,14 @@ def tread_unit(
         rate = f", rad/s of wheels of {1 / factor:.2g} m radius" if usual else ""
         words.append(f"scaled by {factor:.2g} (gear ratio{rate})")
     several = ": these cannot be distinguished" if len(words) > 1 else ""
+    off = ORDINARY_FORWARD * measured if COUNTS in others and measured else unit.factor
     return Finding(
         "tread_unit",
         Level.WARNING,
         f"{seen}; treads run at up to {evidence.fastest_m_s:.4g} m/s",
         f"Tread speeds are {'; or '.join(words)}{several}",
         "Convert v_left and v_right to m/s: wheel rate times radius",
-        mend=treads_times(1 / unit.factor, 1 / unit.factor),
+        mend=treads_times(1 / off, 1 / off),
     )
 
 

@@ -9,6 +9,7 @@ ORDINARY_FORWARD = 0.93  # metres that a robot moves for each metre of tread tra
 # Least share of its way that a robot moves which slips, and one that moves farther than it should.
 SLIPS, HOLDS = 0.45, 0.8
 RADII_M = (0.04, 0.6)  # of wheels
+COUNTS = "encoder ticks"  # of any number a metre
 
 
 @dataclass(frozen=True)

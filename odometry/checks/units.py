@@ -30,6 +30,7 @@ from odometry.checks.unit_findings import (
     tread_unit,
 )
 from odometry.checks.unit_tables import (
+    COUNTS,
     HOLDS,
     ORDINARY_FORWARD,
     POSITION_UNITS,
@@ -50,7 +51,6 @@ LEAST_WINDOWS = 15  # from which a factor without heading can be called constant
 NEARLY = 0.9  # of the ordinary way: farther off, the unit may be another one
 MOST, CLOSELY = 0.7, 0.99  # share of the windows, and their correlation, that are no outliers
 STRAIGHT_TO_ALL = 1.2  # ratio of the ways for each metre of the treads; real robots have less
-COUNTS = "encoder ticks"
 SLIPPERY_WIDTH = 2.1  # in track widths; where robots slipped along the way they turned as if 2.3
 ONE_AXIS_STRETCHED = 1.6  # degrees of longitude taken for those of latitude
 
@@ -179,6 +179,7 @@ def _unit_or_slip(
             forward * tread.factor < NEARLY * ORDINARY_FORWARD
             or tread.words in RARE
             or tread.factor == 1 / forward
+            or _are_whole(evidence)
         )
         return tread_unit(
             seen, tread, evidence, *([COUNTS] if counted else []), measured=1 / forward
@@ -201,3 +202,8 @@ def _unit_or_slip(
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
         return slip_along(seen, tight)
     return scale_along(seen, forward, radius_known)
+
+
+def _are_whole(evidence: Evidence) -> bool:
+    """Whether all speeds are whole numbers, as counts are."""
+    return bool((evidence.speeds_m_s == np.round(evidence.speeds_m_s)).all())

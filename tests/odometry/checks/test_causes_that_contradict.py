@@ -120,13 +120,6 @@ def test_ticks_are_no_certain_wheel_rate():
     assert "encoder ticks" in found.cause
 
 
-def test_lost_samples_of_one_side_are_no_other_scale():
-    rng = np.random.default_rng(3)
-    run = turning_all_round()
-    lost = treads(run, lambda left, right: (left, np.where(rng.random(4000) < 0.25, 0.0, right)))
-    assert warnings(lost) == ["dropped_speeds"]
-
-
 def test_speeds_that_read_zero_below_a_limit_are_no_lost_samples():
     noise = 0.05 * np.random.default_rng(1).standard_normal(4000)
     run = treads(
@@ -153,12 +146,3 @@ def test_curved_speeds_are_said_where_slip_hides_what_they_are():
     )
     assert warnings(bent) == UNKNOWN
     assert "m at a quarter of the ordinary fastest speed" in seen(bent)
-
-
-def test_one_side_in_another_unit_is_no_slip():
-    """A figure eight: no window is straight, and no speed along it is slow."""
-    at_s = 0.05 * np.arange(2400)
-    eight = drive(np.full(2400, 0.7), 0.9 * np.sign(np.sin(at_s / 4)))
-    named = warnings(treads(eight, lambda left, right: (left, 3.6 * right)))
-    assert named
-    assert not {"slip", "treads_not_proportional"} & set(named)

@@ -1,11 +1,15 @@
 """Real recordings, altered: a cause that another sensor contradicts is not named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from odometry.checks.constancy import uneven_map
+from odometry.checks.evidence import Evidence
 from odometry.checks.late_stamps import followed
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.run import Robot, Run
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 from tests.odometry.checks.test_causes_that_contradict import UNKNOWN
 from tests.odometry.checks.test_confirmed_causes import warnings
@@ -67,3 +71,44 @@ def test_twist_that_wrapped_is_beyond_slip(recording):
     wrapped = (half + most) % (2 * most) - most
     run = treads(run, lambda *_: ((left + right) / 2 - wrapped, (left + right) / 2 + wrapped))
     assert "beyond what any slip" in check_recording(run).findings[0].seen
+
+
+def test_a_gyroscope_that_is_weak_to_one_side_has_no_bias(recording):
+    run = recording("marmotte_boreal_20240125_1215_s00")
+    weak = gyroscope(run, lambda rate: np.where(rate > 0, 0.8 * rate, rate))
+    assert warnings(weak) == UNKNOWN
+
+
+def test_slip_explains_no_sign_that_is_lost(recording):
+    run = recording("husky_2023_s00")
+    run = replace(run, imu=None, robot=Robot(run.robot.track_width))
+    lost = treads(run, lambda left, right: (left, np.abs(right)))
+    assert warnings(lost) == UNKNOWN
+
+
+def test_slip_that_cannot_be_undone_is_named_beside_treads_ahead(recording):
+    assert "slip" in names(recording("warthog_ice_20240730_1630_s04"))
+
+
+def test_lost_samples_of_one_side_are_no_other_scale(recording):
+    lost = np.random.default_rng(3).random(len(recording(BENDS).odometry)) < 0.2
+    run = treads(recording(BENDS), lambda left, right: (left, np.where(lost, 0.0, right)))
+    assert warnings(run) == ["dropped_speeds"]
+
+
+def test_one_side_in_another_unit_is_no_stuck_encoder(recording):
+    run = recording("husky_2023_s02")
+    run = replace(run, imu=None, robot=Robot(run.robot.track_width))
+    assert warnings(treads(run, lambda left, right: (left, 3.6 * right))) == ["treads_unequal"]
+
+
+def test_a_turn_is_not_blocked_where_one_tread_has_lost_its_sign(recording):
+    run = recording("warthog_asphalt_20240920_0813")
+    assert warnings(treads(run, lambda left, right: (left, np.abs(right)))) == UNKNOWN
+
+
+def test_speeds_that_end_at_a_limit_are_no_map_that_shrinks(recording):
+    """Metres differ by place, and places explain nothing of it."""
+    run = recording("warthog_asphalt_slow_20240808_1146_s02")
+    clipped = treads(run, lambda *of: tuple(np.clip(v, -0.4071, 0.4071) for v in of))
+    assert uneven_map(Evidence(clipped)) == ""
