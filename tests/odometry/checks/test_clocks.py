@@ -1,8 +1,13 @@
 """Clocks of another rate, also where a lag grows by more within a piece than it is uncertain."""
 
+from dataclasses import replace
+
 import pytest
 
+from odometry.checks.evidence import Evidence
+from odometry.checks.lag import Lag
 from odometry.checks.recording import check_recording
+from odometry.checks.timing import found_in
 from odometry.run import Run
 from tests.odometry.checks.faulty import pose_stamps
 from tests.odometry.checks.test_confirmed_causes import turning_all_round
@@ -39,3 +44,12 @@ def test_a_robot_that_stops_while_its_clock_drifts_has_not_lost_its_odometry(sha
     run = Run.read(shared_data / "motion" / "warthog_grass_20240808_1556")
     names = [f.name for f in check_recording(pose_stamps(run, of_rate(3.0))).findings]
     assert names == ["clocks_apart"]
+
+
+def test_a_lag_that_grows_is_no_constant_one():
+    """Also where it grows too unevenly for clocks that run apart."""
+    evidence, pair = Evidence(turning_all_round()), ("pose", "gyroscope")
+    constant = Lag(0.6, 0.01, 0.0, 0.0005, 0.95, 20, 0.8)
+    grows = replace(constant, drift=0.01, pieces=4)
+    assert [found.name for found in found_in(evidence, {pair: constant})] == ["pose_late"]
+    assert list(found_in(evidence, {pair: grows})) == []

@@ -60,9 +60,17 @@ def test_positions_stretched_along_an_axis_are_shortened():
     stretched = positions(run, lambda x, y: (x, 1.4 * y))
     (found,) = check_recording(stretched).at(Level.WARNING)
     assert found.name == "positions_stretched"
+    assert "right angles" not in found.cause
     mended = found.mend(stretched).pose.stack("x", "y")
     sizes = np.ptp(mended, axis=0) / np.ptp(run.pose.stack("x", "y"), axis=0)
     assert sizes[1] / sizes[0] == pytest.approx(1.0, abs=0.06)
+
+
+def test_positions_stretched_off_the_axes_may_have_axes_that_lean():
+    leaning = positions(turning_all_round(), lambda x, y: (x + 0.35 * y, y))
+    (found,) = check_recording(leaning).at(Level.WARNING)
+    assert found.name == "positions_stretched"
+    assert "its axes are not at right angles" in found.cause
 
 
 def test_commands_are_distinguished_from_stamps_that_are_early():

@@ -48,6 +48,10 @@ def test_smoothed_poses_are_found_with_the_time(alter, seconds):
     assert "cut corners short" in finding.cause
 
 
+def test_positions_that_are_smooth_beside_a_sharp_yaw_are_something_else():
+    assert found_in(smoothed(winding(), 2.0, ("x", "y"))) == []
+
+
 def test_the_check_names_them_first():
     assert check_recording(smoothed(winding(), 2.0)).findings[0].name == "smoothed_poses"
 
