@@ -19,6 +19,7 @@ from terrain.errors import CameraError, ImageError
 from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image
 from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
+from terrain.still_view import StillWatch
 from terrain.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
 KEPT = 200  # statistics of the latest images
@@ -108,13 +109,15 @@ class ImageLabeller:
         self._folder = folder
         self._has_answered = False
         self._before: ByteImage | None = None
+        self._still = StillWatch(camera)
 
-    def label(self, frame: Frame, estimate: Estimate) -> ImageLabel:
+    def label(self, frame: Frame, estimate: Estimate, pose: FloatArray | None = None) -> ImageLabel:
         """Classify the region ahead in the image of a frame.
 
         An image that cannot be read, a grey one where the classifier needs colour, one of another
         size among good ones, or one that equals the one before, is an image label without a name,
-        so that one bad file does not end a long run.
+        so that one bad file does not end a long run. So is one in which the view stays although
+        the robot moves, by its pose (3,), if that is given.
 
         Raises
         ------
@@ -139,6 +142,8 @@ class ImageLabeller:
         if isinstance(region, NoRegion):
             return ImageLabel(frame.stamp_s, name, reason=region.reason)
         image = self._read(frame.image, name or f"the image of {frame.stamp_s} s")
+        if not isinstance(image, str) and pose is not None and self._still.stays(image, pose):
+            image = "the view stays while the treads move"
         if isinstance(image, str):
             return ImageLabel(frame.stamp_s, name, region=region, reason=image)
         views = [self._view(image, r) for r in region.rectangles]

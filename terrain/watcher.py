@@ -103,7 +103,7 @@ class TerrainWatcher:
         if frame.in_gap:
             self._switch = self._switch.without_labels()
         if frame.image is not None:
-            image_label = self._track.judged(self.look(frame, estimate), travel_m)
+            image_label = self._track.judged(self.look(frame, estimate, pose), travel_m)
             self.image_labels.append(image_label)
             if image_label.label and image_label.region is not None:
                 given = self.seen.weighed(image_label.label, image_label.probabilities)
@@ -156,9 +156,9 @@ class TerrainWatcher:
         self._last = estimate
         return _carried(self._pose, estimate, frame.stamp_s, frame.yaw_rate_rad_s)
 
-    def look(self, frame: Frame, estimate: Estimate) -> ImageLabel:
+    def look(self, frame: Frame, estimate: Estimate, pose: FloatArray | None = None) -> ImageLabel:
         """Classify the region ahead in the image of a frame; see `ImageLabeller.label`."""
-        return self._labeller.label(frame, estimate)
+        return self._labeller.label(frame, estimate, pose)
 
 
 def _carried(

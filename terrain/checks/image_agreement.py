@@ -125,6 +125,17 @@ class ImageMotion:
         """Loss (G,) at every lag, by a camera that does not rock."""
         return np.asarray(self._steady.losses.sum(axis=1))
 
+    @property
+    def plain_gains(self) -> tuple[complex, float, float, float]:
+        """Gain and its deviation, turn and its deviation, at the lag of the least of these."""
+        found, best = self._steady, int(self.plain_losses.argmin())
+        return (
+            complex(found.gains[best]),
+            float(found.gain_sds[best]),
+            float(found.turns[best]),
+            float(found.turn_sds[best]),
+        )
+
     @cached_property
     def plain_reversed_loss(self) -> float:
         """The same where the last image was taken first."""
@@ -193,13 +204,17 @@ class ImageMotion:
         return float(agreement(self.steps.steps, travel_m, turn_rad, noise).losses.sum())
 
     def _robot(self, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Travel [m] and turn [rad] (G, P) of the robot between stamps (G, P, 2)."""
-        odometry_s = self.run.odometry.stamps_s
-        at_s = stamps_s.clip(odometry_s[0], odometry_s[-1]).ravel()
-        of = CleanedRecording(self.run).integrals
-        left, right, turn = (
-            np.diff(integral(at_s).reshape(stamps_s.shape), axis=2)[..., 0]
-            for integral in (of.left_m, of.right_m, of.gyroscope_rad)
-        )
-        by_treads = (right - left) / (ORDINARY_WIDTH * self.run.robot.track_width)
-        return (left + right) / 2, np.where(np.isfinite(turn), turn, by_treads)
+        return robot_motion(self.run, stamps_s)
+
+
+def robot_motion(run: Run, stamps_s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Travel [m] and turn [rad] (G, P) of the robot between stamps (G, P, 2)."""
+    odometry_s = run.odometry.stamps_s
+    at_s = stamps_s.clip(odometry_s[0], odometry_s[-1]).ravel()
+    of = CleanedRecording(run).integrals
+    left, right, turn = (
+        np.diff(integral(at_s).reshape(stamps_s.shape), axis=2)[..., 0]
+        for integral in (of.left_m, of.right_m, of.gyroscope_rad)
+    )
+    by_treads = (right - left) / (ORDINARY_WIDTH * run.robot.track_width)
+    return (left + right) / 2, np.where(np.isfinite(turn), turn, by_treads)

@@ -1,6 +1,7 @@
 """Whether the terrain moves through the images as the treads moved the robot, and when they did."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,11 +11,13 @@ from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
+from terrain.checks.image_stretches import image_stretches
 from terrain.checks.lens_from_motion import wrong_lens
 from terrain.checks.moved_camera import moved_camera
 from terrain.checks.terrain_views import TerrainViews
 from terrain.checks.unrelated_images import (
     UNEXPLAINED,
+    agrees,
     unexplained,
     unrelated_images,
     varies,
@@ -33,6 +36,8 @@ MIRRORED = -0.5  # of a turn by images over that of the robot
 def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     """Images that are late, early, reversed or mirrored, and a camera that points elsewhere.
 
+    Stretches on which the view stays or has no texture are findings, and are not compared.
+
     Returns
     -------
     list of Finding
@@ -40,21 +45,24 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
         Why nothing could be checked, or "".
     """
     views = TerrainViews(run, camera.image_size)
+    stretches = image_stretches(run, camera, views)
+    poor = list(stretches.findings())
+    run = stretches.others()
     steps = ground_steps(run, camera, views)
     motion = ImageMotion(run, steps) if len(steps) >= FEWEST_PAIRS else None
     why = _doubt(motion, steps)
     if why:
         others = list(unrelated_images(run, camera, views, steps))
         if others:
-            return others, ""
+            return poor + others, ""
     found: list[Finding] = []
     if motion is not None and why == _DISAGREE:
         found = list(wrong_lens(motion, camera, agrees=False))
     elif motion is not None:
         found = list(_findings(motion, camera))
     if why and not found:
-        return [], f"whether images show the motion of the treads: {why}"
-    return found, ""
+        return poor, f"whether images show the motion of the treads: {why}"
+    return poor + found, ""
 
 
 _DISAGREE = (
@@ -103,7 +111,8 @@ def _findings(motion: ImageMotion, camera: Camera) -> Iterator[Finding]:
     if size <= unsure:
         return
     if turn + unsure_turn < MIRRORED and abs(aside_rad) < np.pi / 4:
-        yield _mirrored(turn)
+        mirrored = replace(motion.steps, steps=motion.steps.steps * [1.0, -1.0, -1.0])
+        yield _mirrored(turn, explains=agrees(ImageMotion(motion.run, mirrored)))
         return
     if abs(aside_rad) - unsure / size > ASIDE_RAD:
         yield _aside(float(np.degrees(aside_rad)))
@@ -133,12 +142,14 @@ def _late(motion: ImageMotion) -> Iterator[Finding]:
     )
 
 
-def _mirrored(turn: float) -> Finding:
+def _mirrored(turn: float, *, explains: bool) -> Finding:
+    """Whether it explains the motion in images that they are mirrored back."""
+    cause = "mirrored, or the yaw rate (the treads, without a gyroscope) has the wrong sign"
     return Finding(
         "images_mirrored",
         Level.WARNING,
         f"the terrain turns through the images by {turn:.2f} times the turn of the robot",
-        "Images are mirrored, or the yaw rate (the treads, without a gyroscope) has the wrong sign",
+        f"{'Images' if explains else 'Cannot be determined: images'} are {cause}",
         "Mirror the images back, or correct the sign",
     )
 

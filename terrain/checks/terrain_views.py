@@ -12,6 +12,7 @@ from terrain.camera import Camera
 from terrain.checks.image_files import MOST_BYTES
 from terrain.errors import ImageError
 from terrain.image_size import stated_size
+from terrain.still_view import small_view
 
 WIDTH_PX = 320  # larger images are reduced to it: their details say no more of the motion
 REDUCED = {
@@ -27,6 +28,11 @@ FARTHEST = 6.0  # of the camera's height: how far terrain is looked at
 
 Pixels = tuple[FloatArray, FloatArray]  # (N, 2) and (N, 2), the same terrain in two images
 Features = tuple[FloatArray, AnyArray]  # pixels (N, 2), and what is there
+# Standard deviation of the details of `small_view` [grey levels]: lenses that are covered, and
+# nights, have 0.2 to 0.8, photographs of the smoothest asphalt 1.5, fog 2
+TEXTURE = 1.0
+# Of it over that of details below FINE_PX: terrain has 0.3 and more, noise alone 0.13
+NOT_NOISE, FINE_PX = 0.2, 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +51,7 @@ class TerrainViews:
     run: Run
     size: tuple[int, int]
     turned: bool = False
-    _kept: dict[str, Features | None] = field(default_factory=dict, repr=False)
+    _kept: dict[str, "_Seen | None"] = field(default_factory=dict, repr=False)
 
     def upside_down(self) -> "TerrainViews":
         """The same images, turned by half a turn."""
@@ -53,8 +59,23 @@ class TerrainViews:
 
     def features(self, name: str) -> Features | None:
         """Features of an image file; None where there are none, or it is of another size."""
+        seen = self._seen(name)
+        return None if seen is None else seen.features
+
+    def details(self, name: str) -> FloatArray | None:
+        """`small_view` of an image file; None where it is of another size."""
+        seen = self._seen(name)
+        return None if seen is None else seen.details
+
+    def is_blank(self, name: str) -> bool:
+        """Whether an image shows nothing, or noise alone."""
+        seen = self._seen(name)
+        return seen is not None and seen.is_blank
+
+    def _seen(self, name: str) -> "_Seen | None":
         if name not in self._kept:
-            self._kept[name] = self._features(name)
+            image = self._grey(name)
+            self._kept[name] = None if image is None else self._looked_at(image)
         return self._kept[name]
 
     def same(self, camera: Camera, first: str, second: str) -> Pixels | None:
@@ -79,16 +100,18 @@ class TerrainViews:
         near = np.linalg.norm(places, axis=1) < FARTHEST * camera.height_m
         return pixels[near], found[1][near]
 
-    def _features(self, name: str) -> Features | None:
-        image = self._grey(name)
-        if image is None:
-            return None
+    def _looked_at(self, image: AnyArray) -> "_Seen":
         orb = cv2.ORB.create(FEATURES, fastThreshold=CONTRAST)
         found, described = orb.detectAndCompute(image, None)
+        details = small_view(image)
+        texture = float(details.std())
+        fine = image - cv2.GaussianBlur(image.astype(np.float32), (0, 0), FINE_PX)
+        blank = texture < max(TEXTURE, NOT_NOISE * float(fine.std()))
         if not found:
-            return None
+            return _Seen(None, details, blank)
         pixels = np.array([one.pt for one in found], dtype=np.float64)
-        return (pixels + 0.5) * self.size[0] / image.shape[1] - 0.5, described
+        pixels = (pixels + 0.5) * self.size[0] / image.shape[1] - 0.5
+        return _Seen((pixels, described), details, blank)
 
     def _grey(self, name: str) -> AnyArray | None:
         """An image of the camera's size, reduced, in grey."""
@@ -110,3 +133,12 @@ class TerrainViews:
             return image
         height = round(image.shape[0] * WIDTH_PX / image.shape[1])
         return np.asarray(cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA))
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What is kept of an image."""
+
+    features: Features | None
+    details: FloatArray
+    is_blank: bool

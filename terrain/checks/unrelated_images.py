@@ -28,6 +28,9 @@ VARIED = 1.5  # of even motion's loss for each pair [nats]: robots that wind hav
 # straight drive has 0.7, with which the images of another straight drive agree by chance
 # Of it: own images leave 0.3 at most, by a steady camera; those of another drive 0.6 to 1.2
 UNEXPLAINED = 0.5
+# Factor of the size, and of the turn, by which images that are put right may still be off (a mount
+# measured badly, treads that slip), and their direction
+OTHER, ASIDE_RAD, SURE = 2.0, float(np.radians(45.0)), 4.0
 ALIKE, ALIKE_S = 0.7, 1.0  # correlation of own images' turns or speeds at a lag of up to so much
 # (0.79 and more by a camera that shakes, or treads that slip; 0.3 at most by another drive)
 STANDING, MANY = 0.25, 0.25  # images that repeat, or treads that spin, are no images of elsewhere
@@ -80,9 +83,21 @@ def _shows(run: Run, steps: GroundSteps) -> bool:
     """Whether steps between images are those of the robot, beyond doubt."""
     if len(steps) < FEWEST_PAIRS:
         return False
-    motion = ImageMotion(run, steps)
-    moves = motion.plain_even_loss > SOME * len(steps)
-    return moves and unexplained(motion) < UNEXPLAINED
+    return agrees(ImageMotion(run, steps))
+
+
+def agrees(motion: ImageMotion) -> bool:
+    """Whether the treads explain the motion in images, in its size, direction and turn.
+
+    A view that stays, and one that drifts aside, leave nothing unexplained by a step of no size.
+    """
+    moves = motion.plain_even_loss > SOME * len(motion.steps)
+    if not (moves and unexplained(motion) < UNEXPLAINED):
+        return False
+    gain, gain_sd, turn, turn_sd = motion.plain_gains
+    turns = turn + SURE * turn_sd > 1 / OTHER and turn - SURE * turn_sd < OTHER
+    right_size = max(1 / OTHER, SURE * gain_sd) < abs(gain) < OTHER
+    return bool(right_size and turns and abs(np.angle(gain)) < ASIDE_RAD)
 
 
 def varies(motion: ImageMotion) -> bool:
@@ -172,7 +187,8 @@ def _in_no_order(
                 f"the same terrain is in {len(steps)} of {len(pairs)} pairs of images that follow "
                 f"each other, and in {found} pairs or more that lie {FAR_M:g} m or more apart by "
                 "the treads",
-                "Images are in no order: rows or files were mixed",
-                "List the files in the order in which they were taken",
+                "Cannot be determined: images are in no order (rows or files were mixed), or the "
+                "robot passed these places again",
+                "List the files in the order in which they were taken, if that is why",
             )
             return

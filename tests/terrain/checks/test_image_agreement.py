@@ -11,6 +11,7 @@ from terrain.checks import image_motion as checked
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps
 from terrain.checks.image_motion import image_motion
+from terrain.checks.image_stretches import ImageStretches
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope
 
 AT_S = 0.05 * np.arange(2400)
@@ -63,6 +64,8 @@ def found(monkeypatch):
         scales = np.random.default_rng(seed).normal(1, 0.003, len(rows))
         steps = GroundSteps(rows, image_s[rows] + late_s, measured, len(rows), scales)
         none = GroundSteps(rows[:0], np.empty((0, 2)), np.empty((0, 3)), len(rows))
+        all_show = ImageStretches(replace(run, images=images), rows[:0], rows[:0, 0])
+        monkeypatch.setattr(checked, "image_stretches", lambda *_: all_show)
         monkeypatch.setattr(checked, "ground_steps", lambda *_: steps)
         monkeypatch.setattr(unrelated_images, "ground_steps", lambda *_: none)
         monkeypatch.setattr(unrelated_images, "_by_name", lambda _: None)

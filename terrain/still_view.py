@@ -1,0 +1,139 @@
+"""Whether what a camera shows stays in its place, though the terrain must have moved through it."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.geometry import se2
+from terrain.camera import Camera
+from terrain.images import to_grey
+
+WIDTH_PX = 160  # of the images that are compared: noise and compression are averaged away
+# Details between these sizes [px] are compared: light, vignetting and blocks of JPEG do not count
+FINEST_PX, COARSEST_PX = 1.0, 4.0
+FLOW_PX = 4.0  # of the terrain, at least: by then the details are elsewhere
+TILE_PX = 16
+FEWEST_TILES = 6  # with such flow
+# Correlation in one place of nearly all tiles: frozen views have 0.8 (0.98 but for much noise),
+# moving terrain behind a dirty lens, which stays in the others, 0.2 at most
+STAYS, NEARLY_ALL = 0.5, 0.9
+AS_WELL = 0.5  # of that correlation, in the place where terrain moved to
+
+
+def small_view(image: AnyArray) -> FloatArray:
+    """Details (h, WIDTH_PX) of an image (H, W) or (H, W, 3), reduced."""
+    height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
+    small = cv2.resize(to_grey(image), (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
+    values = small.astype(np.float32)
+    fine, coarse = (cv2.GaussianBlur(values, (0, 0), size) for size in (FINEST_PX, COARSEST_PX))
+    return np.asarray(fine - coarse, dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class StillView:
+    """Compares views of one camera.
+
+    Attributes
+    ----------
+    camera : Camera
+    """
+
+    camera: Camera
+
+    def stays(self, before: FloatArray, after: FloatArray, step: FloatArray) -> bool | None:
+        """Whether two views of `small_view` show the same in the same place.
+
+        Judged where the terrain is: what the image shows of the robot itself, and above the
+        horizon, may stay.
+
+        Parameters
+        ----------
+        before, after : (h, WIDTH_PX)
+        step : (3,)
+            x, y [m], yaw [rad] of the second robot frame in the first, by treads and gyroscope.
+
+        Returns
+        -------
+        bool or None
+            None where the terrain need not have moved by FLOW_PX. False as well where the views
+            agree in the place where terrain moved to: stripes along the way look alike in both.
+        """
+        middles = _grid(before.shape, TILE_PX)
+        moves = np.linalg.norm(self._after(step, middles) - middles, axis=1) > FLOW_PX
+        if before.shape != after.shape or np.count_nonzero(moves) < FEWEST_TILES:
+            return None
+        if _alike(before, after, moves) < STAYS:
+            return False
+        carried = self._after(step, _grid(before.shape, 1)).reshape(*before.shape, 2)
+        u, v = (np.nan_to_num(of, nan=-1.0).astype(np.float32) for of in np.moveaxis(carried, 2, 0))
+        height, width = before.shape
+        inside = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
+        whole = moves & (_tiles(inside).min(axis=1) > 0)
+        if np.count_nonzero(whole) < FEWEST_TILES:
+            return False
+        moved = cv2.remap(after, u, v, cv2.INTER_LINEAR)
+        return _alike(before, moved, whole) < AS_WELL * _alike(before, after, whole)
+
+    def _after(self, step: FloatArray, pixels: FloatArray) -> FloatArray:
+        """Where the terrain at pixels (N, 2) of a view is after a step; NaN where there is none."""
+        times = self.camera.image_size[0] / WIDTH_PX
+        places = self.camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
+        there = self.camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
+        return np.asarray((there + 0.5) / times - 0.5)
+
+
+class StillWatch:
+    """Follows the images of a camera, and says from when on the view stays.
+
+    Parameters
+    ----------
+    camera : Camera
+    """
+
+    def __init__(self, camera: Camera) -> None:
+        self._still = StillView(camera)
+        self._before: tuple[FloatArray, FloatArray] | None = None
+        self._stays = False
+
+    def stays(self, image: AnyArray, pose: FloatArray) -> bool:
+        """Whether the view has stayed since an image before, by the poses (3,) of the robot.
+
+        The answer holds until the robot has moved enough for another one.
+        """
+        view = small_view(image)
+        if self._before is not None:
+            earlier, was = self._before
+            answer = self._still.stays(earlier, view, se2.between(was, pose))
+            if answer is None and earlier.shape == view.shape:
+                return self._stays
+            self._stays = bool(answer)
+        self._before = view, pose
+        return self._stays
+
+
+def _grid(shape: tuple[int, ...], step_px: int) -> FloatArray:
+    """Middles (N, 2) of squares in a view of a shape (h, w), row by row."""
+    u, v = np.meshgrid(np.arange(shape[1] // step_px), np.arange(shape[0] // step_px))
+    return np.asarray((np.column_stack([u.ravel(), v.ravel()]) + 0.5) * step_px - 0.5)
+
+
+def _alike(one: AnyArray, other: AnyArray, chosen: BoolArray) -> float:
+    """Correlation of two views that nearly all of the chosen tiles (K,) have."""
+    first, second = (_centred(_tiles(view)[chosen]) for view in (one, other))
+    sizes = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+    alike = (first * second).sum(axis=1) / np.maximum(sizes, 1e-9)
+    return float(np.quantile(alike, 1 - NEARLY_ALL))
+
+
+def _centred(tiles: AnyArray) -> AnyArray:
+    return np.asarray(tiles - tiles.mean(axis=1, keepdims=True))
+
+
+def _tiles(view: AnyArray) -> AnyArray:
+    """Parts (K, TILE_PX ** 2) of a view, row by row."""
+    rows, columns = (length // TILE_PX for length in view.shape)
+    whole = view[: rows * TILE_PX, : columns * TILE_PX]
+    tiles = whole.reshape(rows, TILE_PX, columns, TILE_PX).swapaxes(1, 2)
+    return np.asarray(tiles.reshape(rows * columns, -1))
