@@ -153,6 +153,22 @@ def mount_of_motion(
     return MountSource(_mounted(lens, fit.mount), f"the motion of {run.folder}", fit, tracks)
 
 
+def with_height(source: MountSource) -> MountSource:
+    """The same mount, whose height nobody stated.
+
+    Raises
+    ------
+    CalibrationError
+        If the run does not determine the height: what run.toml says may be what is wrong.
+    """
+    if source.fit is not None and np.isnan(source.fit.half_interval[2]):
+        raise CalibrationError(
+            "the run does not determine the height of the camera: give a mount that was measured "
+            "with --mount, or drive farther"
+        )
+    return source
+
+
 def _mounted(lens: Lens, mount: ArrayLike) -> Camera:
     values = np.asarray(mount, dtype=np.float64)
     return Camera.from_mount(lens.image_size, lens.matrix, lens.distortion, values)

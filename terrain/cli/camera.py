@@ -199,7 +199,8 @@ def _placed(
     if sources["--from-motion"] is None:
         return known
     place = known.camera.mount if known is not None else None
-    return mounts.mount_of_motion(run, lens.lens, place, show_progress=True)
+    found = mounts.mount_of_motion(run, lens.lens, place, show_progress=True)
+    return found if stated is not None else mounts.with_height(found)
 
 
 def _write(run_folder: Path, placed: "MountSource | None") -> None:

@@ -14,6 +14,7 @@ from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m
 from terrain.calibration.mount_fit import NAMES
 from terrain.calibration.mount_sources import MountSource
 from terrain.camera import Camera
+from terrain.checks.image_motion import image_motion
 from terrain.checks.region_ahead import no_mount, region_ahead
 from terrain.classification.trained import Classifier
 from terrain.region import NoRegion, RegionConfig
@@ -76,9 +77,13 @@ def _coarser_model(camera: Camera, robot: Robot, classifier: Classifier) -> str:
 
 def print_doubts(run: Run, source: MountSource) -> None:
     """Say what the check of a run would say of this mount, before it is in run.toml."""
-    if source.fit is not None:
+    if source.tracks is not None:
+        found, _ = image_motion(run, source.camera)
+    elif source.fit is None:
+        found = list(region_ahead(run, source.camera.to_table()))
+    else:
         return
-    for finding in region_ahead(run, source.camera.to_table()):
+    for finding in found:
         if finding.level is Level.WARNING:
             click.echo(f"Warning: {finding.line.partition(': ')[2]}", err=True)
 

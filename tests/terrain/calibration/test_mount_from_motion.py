@@ -1,13 +1,16 @@
 """The mount from a run, against tracks and images made with a mount that is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.run import Run
+from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_from_motion import mount_from_motion
-from terrain.calibration.mount_sources import mount_of_motion
+from terrain.calibration.mount_sources import MountSource, mount_of_motion, with_height
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
@@ -89,6 +92,38 @@ def test_too_little_texture():
     blind = Tracks(made.before, made.after, made.pair, made.steps, 80)
     with pytest.raises(CalibrationError, match=r"10 of 80 pairs .* too little texture"):
         mount_from_motion(blind, LENS)
+
+
+def stayed(made, pairs, rng):
+    """The same tracks, with the features of the first pairs where they were, to 0.1 px."""
+    after = np.where((made.pair < pairs)[:, None], made.before, made.after)
+    return replace(made, after=after + rng.normal(0, 0.1 / 460, after.shape))
+
+
+def test_a_frozen_camera_has_no_mount():
+    rng = np.random.default_rng(8)
+    with pytest.raises(CalibrationError, match=r"in 24 of 24 pairs .* the view stays"):
+        mount_from_motion(stayed(tracks(MOUNT, rng), 24, rng), LENS, np.array(MOUNT))
+
+
+def test_pairs_in_which_the_view_stays_do_not_count():
+    rng = np.random.default_rng(8)
+    made = stayed(tracks(MOUNT, rng, pairs=40), 20, rng)
+    found, used = mount_from_motion(made, LENS, np.array(MOUNT) * [1, 1, 0, 0, 0, 0])
+    np.testing.assert_allclose(found.mount, MOUNT, atol=3e-3)
+    assert len(used.steps) == 20
+
+
+def test_the_intervals_are_said_to_hold_for_the_lens():
+    found, _ = mount_from_motion(tracks(MOUNT, np.random.default_rng(1)), LENS)
+    assert any("for the lens as given" in note for note in found.notes)
+
+
+def test_a_height_that_the_run_does_not_determine_has_to_be_stated():
+    half = np.array([np.nan, np.nan, np.nan, 0.01, 0.01, 0.01])
+    source = MountSource(None, "the motion", MountFit(np.array(MOUNT), half, np.zeros(3)))
+    with pytest.raises(CalibrationError, match="does not determine the height"):
+        with_height(source)
 
 
 def test_a_narrow_view_with_noise_determines_no_pitch():

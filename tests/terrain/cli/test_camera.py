@@ -7,6 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
+from odometry.checks.finding import Finding, Level
+from terrain.calibration import mount_sources
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_sources import MountSource
 from terrain.camera import Camera
@@ -111,6 +113,35 @@ def test_the_run_itself(verb, run, world, tmp_path):
     assert (tmp_path / "out" / "figures" / "flow.png").exists()
     before = tomllib.loads((tmp_path / "out" / "camera_before.toml").read_text())
     assert before["camera"]["mount"][4] == 0.5
+
+
+@pytest.mark.parametrize("options", [(), ("--write",)])
+def test_a_height_that_is_not_determined_leaves_no_file(verb, run, tmp_path, monkeypatch, options):
+    found = mount_sources.mount_of_motion
+
+    def vague(*given, **more):
+        source = found(*given, **more)
+        source.fit.half_interval[2] = np.nan
+        return source
+
+    monkeypatch.setattr(mount_sources, "mount_of_motion", vague)
+    before = (run / "run.toml").read_bytes()
+    answer = verb("camera", run, "--out", tmp_path / "out", "--from-motion", *options)
+    assert answer.exit_code == 1
+    assert "does not determine the height" in answer.output
+    assert (run / "run.toml").read_bytes() == before
+    assert not (tmp_path / "out" / "camera.toml").exists()
+    stated = ("--mount", 0.2, 0.0, 0.7, 0.0, 0.5, 0.0)
+    assert verb("camera", run, "--out", tmp_path / "b", "--from-motion", *stated).exit_code == 0
+
+
+def test_what_the_check_says_of_the_images_is_said_of_a_mount_from_motion(
+    verb, run, tmp_path, monkeypatch
+):
+    late = Finding("images_late", Level.WARNING, "images are late", "A clock", "Look")
+    monkeypatch.setattr("terrain.cli.camera_text.image_motion", lambda *_: ([late], ""))
+    answer = verb("camera", run, "--out", tmp_path / "out", "--from-motion")
+    assert "Warning: images are late. A clock. Look" in answer.output
 
 
 def test_a_camera_that_misses_the_region(verb, run, tmp_path):
