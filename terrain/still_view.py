@@ -19,6 +19,7 @@ FEWEST_TILES = 6  # with such flow
 # Correlation in one place of nearly all tiles: frozen views have 0.8 (0.98 but for much noise),
 # moving terrain behind a dirty lens, which stays in the others, 0.2 at most
 STAYS, NEARLY_ALL = 0.5, 0.9
+SURELY = 0.9  # of it, where the terrain has left the view, so that stripes cannot be excluded
 AS_WELL = 0.5  # of that correlation, in the place where terrain moved to
 
 
@@ -64,7 +65,8 @@ class StillView:
         moves = np.linalg.norm(self._after(step, middles) - middles, axis=1) > FLOW_PX
         if before.shape != after.shape or np.count_nonzero(moves) < FEWEST_TILES:
             return None
-        if _alike(before, after, moves) < STAYS:
+        in_place = _alike(before, after, moves)
+        if in_place < STAYS:
             return False
         carried = self._after(step, _grid(before.shape, 1)).reshape(*before.shape, 2)
         u, v = (np.nan_to_num(of, nan=-1.0).astype(np.float32) for of in np.moveaxis(carried, 2, 0))
@@ -72,7 +74,7 @@ class StillView:
         inside = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
         whole = moves & (_tiles(inside).min(axis=1) > 0)
         if np.count_nonzero(whole) < FEWEST_TILES:
-            return False
+            return in_place > SURELY
         moved = cv2.remap(after, u, v, cv2.INTER_LINEAR)
         return _alike(before, moved, whole) < AS_WELL * _alike(before, after, whole)
 

@@ -97,6 +97,17 @@ def test_stripes_along_the_way_are_no_frozen_view(terrain):
     assert stays(camera, seen(furrows, camera), seen(furrows, camera, step), step) is False
 
 
+def test_a_frozen_view_is_found_where_the_terrain_has_left_it(terrain):
+    camera, step = down(60), np.array([1.5, 0, 0])
+    image = seen(terrain, camera)
+    assert stays(camera, image, CHANGES[1](image).astype(np.uint8), step) is True
+    assert stays(camera, image, seen(terrain, camera, step), step) is False
+    furrows = np.repeat(terrain[:, 1000][:, None], 2000, axis=1)
+    rough = 120 + 0.9 * (furrows - 120) + 0.4 * (terrain - 120)
+    images = seen(rough, camera), seen(rough, camera, step)
+    assert stays(camera, *images, step) is False
+
+
 def test_noise_alone_is_no_frozen_view():
     rng = np.random.default_rng(5)
     images = [np.clip(rng.normal(100, 20, SIZE[::-1]), 0, 255).astype(np.uint8) for _ in range(2)]

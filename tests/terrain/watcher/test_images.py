@@ -55,6 +55,17 @@ def test_an_image_that_equals_the_one_before_shows_nothing_new(watch):
     assert labels[3].reason == "the image is the one before"
 
 
+def test_a_view_that_stays_while_the_robot_moves_has_no_label(watch):
+    rng = np.random.default_rng(2)
+    rough = [cv2.GaussianBlur(rng.normal(150, 400, (120, 160)), (0, 0), 2.0) for _ in range(2)]
+    views = [*rough, *[rough[1] + rng.normal(0, 3, (120, 160)) for _ in range(3)], rough[0]]
+    watched = watch([np.clip(view, 0, 255).astype(np.uint8) for view in views])
+    drive(watched)
+    labels = watched.watcher.image_labels
+    assert [bool(one.label) for one in labels] == [True, True, False, False, False, True]
+    assert labels[3].reason == "the view stays while the treads move"
+
+
 def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
     """A left turn of 0.4 m radius: at every look-ahead a corner of the footprint is outside."""
     watched = watch([BRIGHT])
