@@ -14,8 +14,8 @@ from terrain.run_options import RunOptions
 ELSEWHERE = frozenset(
     {"images_unrelated", "images_unordered", "images_reversed", "images_upside_down"}
 )
-# ... and by which some of them show nothing new
-FROZEN = "images_frozen"
+# ... and by which some of them do, or show nothing
+OF_STRETCHES = frozenset({"images_frozen", "images_blank"})
 
 
 def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]:
@@ -44,7 +44,7 @@ def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]
 
 
 def run_to_label(run: Run, report: CheckReport) -> Run:
-    """A run without the images of a frozen camera, which show other terrain than that ahead.
+    """A run without the images of a frozen or covered camera, which do not show what is ahead.
 
     Raises
     ------
@@ -61,8 +61,10 @@ def run_to_label(run: Run, report: CheckReport) -> Run:
     times_s = run.images.stamps_s - run.odometry.stamps_s[0]
     kept = np.ones(len(times_s), dtype=bool)
     for finding in report.findings:
-        for from_s, to_s in finding.spans_s if finding.name == FROZEN else ():
+        for from_s, to_s in finding.spans_s if finding.name in OF_STRETCHES else ():
             kept &= (times_s < from_s) | (times_s > to_s)
     if not kept.any():
-        raise PatchError(f"{run.folder}: no image is left: the camera was frozen all the time")
+        raise PatchError(
+            f"{run.folder}: no image is left: the camera was frozen or covered all the time"
+        )
     return replace(run, images=run.images.rows(np.flatnonzero(kept)))

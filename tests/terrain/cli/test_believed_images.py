@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from odometry.checks.finding import CheckReport, Finding, Level
 from odometry.run import Run
-from terrain.believed_images import ELSEWHERE, FROZEN, believed, run_to_label
+from terrain.believed_images import ELSEWHERE, OF_STRETCHES, believed, run_to_label
 from terrain.cli.batch import batch
 from terrain.cli.run import run
 from terrain.config import Config
@@ -63,15 +63,16 @@ def test_no_patch_is_cut_from_them(name, across_run):
         run_to_label(of, report)
 
 
-def test_of_a_frozen_camera_only_the_other_images_are_labelled(across_run):
+@pytest.mark.parametrize("name", sorted(OF_STRETCHES))
+def test_of_a_frozen_or_covered_camera_only_the_other_images_are_labelled(name, across_run):
     of = Run.read(across_run)
-    held = replace(found(FROZEN), spans_s=((1.0, 2.0), (3.0, 3.5)))
+    held = replace(found(name), spans_s=((1.0, 2.0), (3.0, 3.5)))
     times_s = of.images.stamps_s - of.odometry.stamps_s[0]
     other = (times_s < 1) | ((times_s > 2) & (times_s < 3)) | (times_s > 3.5)
     kept = run_to_label(of, CheckReport(across_run, (held, found("images_late"))))
     assert 0 < len(kept.images) < len(of.images)
     assert kept.images.stamps_s.tolist() == of.images.stamps_s[other].tolist()
-    with pytest.raises(PatchError, match="frozen all the time"):
+    with pytest.raises(PatchError, match="frozen or covered all the time"):
         run_to_label(of, CheckReport(across_run, (replace(held, spans_s=((0.0, 1e9),)),)))
 
 
