@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from odometry.run import UNKNOWN
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 
 # Probability of being right: a wrong name costs more than twice what a right one brings.
 TRUSTED = 0.7
@@ -76,7 +76,8 @@ class Classification:
             return self
         learned = self.probability_right is not None
         most = MOST_BEYOND_LEARNED if learned else MOST_BEYOND
-        if likeness.beyond is not None and likeness.beyond > most:
+        are_many = likeness.images >= FEWEST_IMAGES  # of fewer, one black image decides
+        if are_many and likeness.beyond is not None and likeness.beyond > most:
             return replace(self, label=UNKNOWN, reason=TOO_UNLIKE)
         if self.probability_right is None or self.probability_right >= TRUSTED:
             return self

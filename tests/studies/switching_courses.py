@@ -150,7 +150,7 @@ class LabellingWatcher(TerrainWatcher):
         self._rng = np.random.default_rng(seed)
         self._wrong, self._wrong_until_m, self._looked_m = "", -1.0, 0.0
 
-    def look(self, frame, estimate):
+    def look(self, frame, estimate, _pose=None):
         """A label of the region that the camera sees; see `predict_region`."""
         name = frame.image.name
         commanded = replace(estimate, tread_speeds_m_s=frame.tread_speeds_m_s)

@@ -33,6 +33,7 @@ def test_in_images_far_beyond_training_nothing_is_named():
     without = replace(DOUBTED, probability_right=None)  # by a model that never erred
     far, farther = replace(UNLIKE, beyond=2.1), replace(UNLIKE, beyond=10.1)
     assert without.unless_doubtful(far) == replace(without, label="unknown", reason=TOO_UNLIKE)
+    assert without.unless_doubtful(replace(far, images=4)).label == "mud"
     sure = replace(DOUBTED, probability_right=0.99)
     assert sure.unless_doubtful(far) == sure
     assert sure.unless_doubtful(farther) == replace(sure, label="unknown", reason=TOO_UNLIKE)
