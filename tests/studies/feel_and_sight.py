@@ -41,7 +41,7 @@ TRAINING = 12  # drives
 class Blind(LabellingWatcher):
     """A watcher whose camera sees nothing."""
 
-    def look(self, frame, estimate):  # noqa: ARG002 - the watcher's
+    def look(self, frame, estimate, pose=None):  # noqa: ARG002 - the watcher's
         """No label."""
         return ImageLabel(frame.stamp_s, frame.image.name, reason="blind")
 
