@@ -116,7 +116,7 @@ class ImageLabeller:
 
         An image that cannot be read, a grey one where the classifier needs colour, one of another
         size among good ones, or one that equals the one before, is an image label without a name,
-        so that one bad file does not end a long run. So is one in which the view stays although
+        so that one bad file does not end a long run. So is one that stays the same although
         the robot moves, by its pose (3,), if that is given.
 
         Raises
@@ -143,7 +143,7 @@ class ImageLabeller:
             return ImageLabel(frame.stamp_s, name, reason=region.reason)
         image = self._read(frame.image, name or f"the image of {frame.stamp_s} s")
         if not isinstance(image, str) and pose is not None and self._still.stays(image, pose):
-            image = "the view stays while the treads move"
+            image = "the image stays the same while the treads move"
         if isinstance(image, str):
             return ImageLabel(frame.stamp_s, name, region=region, reason=image)
         views = [self._view(image, r) for r in region.rectangles]

@@ -146,7 +146,7 @@ def _moving(tracks: Tracks, focus_px: float) -> Tracks:
     kept = np.flatnonzero(share < MOST_STAYING)
     if len(kept) < FEWEST_PAIRS:
         raise CalibrationError(
-            f"in {pairs - len(kept)} of {pairs} pairs of images the view stays though the treads "
+            f"in {pairs - len(kept)} of {pairs} pairs the image stays the same though the treads "
             "move: the camera is frozen, or the robot stood; the mount cannot be determined"
         )
     return tracks.of_pairs(kept)

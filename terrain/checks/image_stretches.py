@@ -43,7 +43,7 @@ class ImageStretches:
             (
                 STAYS,
                 "images_frozen",
-                "the view stays while the treads move",
+                "the image stays the same while the treads move",
                 "The camera is frozen and repeats one image (noise, light or a clock in it may "
                 "change), or it shows nothing but the robot, or treads spin and the robot stands",
                 "Leave these images out of images.csv; check the camera and its driver",

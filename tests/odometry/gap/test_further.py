@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.history import History
 from odometry.effects.residual import Residual
-from odometry.effects.residual_of_place import ResidualOfPlace
-from odometry.effects.residual_variables import FURTHER, VARIABLES
+from odometry.effects.residual_variables import FURTHER
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter
@@ -17,7 +15,6 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.further import Further, further_candidates
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import floor_of
-from odometry.gap.show.unknown import DRIVES
 
 CONFIG = GapConfig()
 ON_ROLL = Residual("roll", tuple(("v_x", k) for k in range(3)), "v_x", (-0.05, 0.0, 0.05))
@@ -118,8 +115,3 @@ def test_what_closes_less_than_what_there_is_does_not_take_its_place(
     monkeypatch.setattr(Further, "_tried_in_turn", lambda *_: [])
     monkeypatch.setattr(Further, "_held_out_left", lambda _, one: (0, share if one.steps else 0.6))
     assert bool(search.further(there).steps) is is_taken
-
-
-def test_every_variable_has_a_drive_that_separates_it():
-    names = {*VARIABLES, *FURTHER, History.variable, ResidualOfPlace.variable}
-    assert names <= set(DRIVES)

@@ -102,7 +102,7 @@ def stayed(made, pairs, rng):
 
 def test_a_frozen_camera_has_no_mount():
     rng = np.random.default_rng(8)
-    with pytest.raises(CalibrationError, match=r"in 24 of 24 pairs .* the view stays"):
+    with pytest.raises(CalibrationError, match=r"in 24 of 24 pairs the image stays the same"):
         mount_from_motion(stayed(tracks(MOUNT, rng), 24, rng), LENS, np.array(MOUNT))
 
 

@@ -63,7 +63,7 @@ def test_a_view_that_stays_while_the_robot_moves_has_no_label(watch):
     drive(watched)
     labels = watched.watcher.image_labels
     assert [bool(one.label) for one in labels] == [True, True, False, False, False, True]
-    assert labels[3].reason == "the view stays while the treads move"
+    assert labels[3].reason == "the image stays the same while the treads move"
 
 
 def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):
