@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 
 Signal = Callable[[FloatArray], FloatArray]
 Rate = Callable[[FloatArray, float], FloatArray]  # of stamps, over a width [s] around each
@@ -128,28 +128,24 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
 
 
 def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
-    """`_correlation` of one signal (n,) with each of others (m, n)."""
+    """Correlation (m,) of one signal (n,) with each of others (m, n), where both are known."""
     correlations = np.full(len(others), np.nan)
-    known = np.array([np.isfinite(other).all() for other in others], dtype=np.bool_)
-    whole = known & np.isfinite(one).all()
-    for row in np.flatnonzero(~whole):
-        correlations[row] = _correlation(one, others[row])
-    a, count = one - one.mean(), max(TOGETHER // len(one), 1)
-    for rows in np.split(np.flatnonzero(whole), range(count, int(whole.sum()), count)):
-        b = others[rows] - others[rows].mean(axis=1)[:, None]
-        sizes = np.sqrt(np.sum(a**2) * np.sum(b**2, axis=1))
-        clear = sizes > LEAST_SIZE
+    count = max(TOGETHER // len(one), 1)
+    for rows in np.split(np.arange(len(others)), range(count, len(others), count)):
+        known = np.isfinite(others[rows]) & np.isfinite(one)
+        counts = known.sum(axis=1)
+        a, b = (_centred(of, known, counts) for of in (one, others[rows]))
+        sizes = np.sqrt(np.sum(a**2, axis=1) * np.sum(b**2, axis=1))
+        clear = (sizes > LEAST_SIZE) & (counts >= LEAST_PIECE_S / GRID_S / 2)
         correlations[rows[clear]] = np.sum(a * b, axis=1)[clear] / sizes[clear]
     return correlations
 
 
-def _correlation(a: FloatArray, b: FloatArray) -> float:
-    known = np.isfinite(a) & np.isfinite(b)
-    if known.sum() < LEAST_PIECE_S / GRID_S / 2:
-        return float("nan")
-    a, b = a[known] - a[known].mean(), b[known] - b[known].mean()
-    size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
-    return float(np.sum(a * b) / size) if size > LEAST_SIZE else float("nan")
+def _centred(values: FloatArray, known: BoolArray, counts: IntArray) -> FloatArray:
+    """Values (n,) or (m, n) less the mean of those known (m, n); 0 where they are not."""
+    of_known = np.where(known, values, 0.0)
+    means = of_known.sum(axis=1) / np.maximum(counts, 1)
+    return np.where(known, of_known - means[:, None], 0.0)
 
 
 def _peak_sigma_s(correlation: float, lasts_s: float, width_s: float) -> float:

@@ -24,13 +24,13 @@ def invoke(monkeypatch, capsys, *arguments):
 
 @pytest.fixture(scope="module")
 def case(tmp_path_factory):
-    """Poses whose stamps are late; half of the runs, to be quick."""
+    """Poses whose stamps are late; a third of the runs, to be quick."""
     case = make_case("time_offset", 0, tmp_path_factory.mktemp("case"))
     for folder in (case.measured, case.holdout):
         for file in folder.glob("*.csv"):
             header, *rows = file.read_text().splitlines(keepends=True)
             times_s = [float(row.split(",", 1)[0]) for row in rows]
-            kept = [row for row, t in zip(rows, times_s, strict=True) if t < times_s[0] + 80.0]
+            kept = [row for row, t in zip(rows, times_s, strict=True) if t < times_s[0] + 50.0]
             file.write_text("".join([header, *kept]))
     return case
 
