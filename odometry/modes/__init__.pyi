@@ -1,4 +1,4 @@
-from .camera_prior import SeenGround
+from .camera_prior import SeenTerrain
 from .detection import detections
 from .files import write_modes
 from .mode_set import DWELL_S, UNDETERMINED
@@ -7,7 +7,7 @@ from .words import sentences
 __all__ = [
     "DWELL_S",
     "UNDETERMINED",
-    "SeenGround",
+    "SeenTerrain",
     "detections",
     "sentences",
     "write_modes",

@@ -18,7 +18,7 @@ PULLED_S = 1.0  # within which a mode of confidence 1 becomes probable where mot
 
 
 @dataclass(frozen=True)
-class SeenGround:
+class SeenTerrain:
     """A terrain that vision saw ahead, from when the robot is on it.
 
     Attributes
@@ -36,7 +36,7 @@ class SeenGround:
     confidence: float
 
 
-def seen_grounds(file: Path, run: Run) -> tuple[SeenGround, ...]:
+def seen_terrains(file: Path, run: Run) -> tuple[SeenTerrain, ...]:
     """What `terrain-odometry run` saw along a run: its terrain.csv.
 
     A label belongs to the place that it was read from: it counts when the wheels have gone there,
@@ -54,18 +54,18 @@ def seen_grounds(file: Path, run: Run) -> tuple[SeenGround, ...]:
     places_m = np.interp(table.stamps_s, odometry_s, travel_m) + table["distance_ahead"]
     labels = table["label"].astype(str)
     located = np.isfinite(places_m) & ~np.isin(labels, NO_LABELS) & (places_m <= travel_m[-1])
-    found: list[SeenGround] = []
+    found: list[SeenTerrain] = []
     last_m = -np.inf
     for row in np.flatnonzero(located)[np.argsort(places_m[located], kind="stable")]:
         label, gone_m = str(labels[row]), last_m + BLIND_LENGTHS * length_m
         if found and places_m[row] > gone_m:
-            found.append(SeenGround(_when(run, gone_m), UNKNOWN, 0.0))
+            found.append(SeenTerrain(_when(run, gone_m), UNKNOWN, 0.0))
         if found and found[-1].label == label and places_m[row] - last_m < length_m:
             continue
         stamp_s, last_m = _when(run, float(places_m[row])), float(places_m[row])
-        found.append(SeenGround(stamp_s, label, float(table["confidence"][row])))
+        found.append(SeenTerrain(stamp_s, label, float(table["confidence"][row])))
     if found and last_m + BLIND_LENGTHS * length_m < travel_m[-1]:
-        found.append(SeenGround(_when(run, last_m + BLIND_LENGTHS * length_m), UNKNOWN, 0.0))
+        found.append(SeenTerrain(_when(run, last_m + BLIND_LENGTHS * length_m), UNKNOWN, 0.0))
     return tuple(found)
 
 
@@ -74,14 +74,14 @@ def _when(run: Run, place_m: float) -> float:
     return float(run.odometry.stamps_s[np.searchsorted(run.wheel_travel_m, place_m)])
 
 
-def seen_labels(seen: Sequence[SeenGround], stamps_s: FloatArray) -> AnyArray:
+def seen_labels(seen: Sequence[SeenTerrain], stamps_s: FloatArray) -> AnyArray:
     """The terrain (N,) under the robot by the camera; "unknown" before the first label."""
     labels = np.array([UNKNOWN, *(one.label for one in seen)], dtype=object)
     return labels[np.searchsorted([one.stamp_s for one in seen], stamps_s, side="right")]
 
 
 def mode_chains(
-    seen: Sequence[SeenGround], names: Sequence[str], dwell_s: FloatArray
+    seen: Sequence[SeenTerrain], names: Sequence[str], dwell_s: FloatArray
 ) -> tuple[ModeChain, ...]:
     """How modes change before the first label, and from each label on.
 
@@ -104,7 +104,7 @@ def mode_chains(
     return (usual, *(_pulled(usual, one, tuple(names)) for one in seen))
 
 
-def _pulled(usual: ModeChain, one: SeenGround, names: tuple[str, ...]) -> ModeChain:
+def _pulled(usual: ModeChain, one: SeenTerrain, names: tuple[str, ...]) -> ModeChain:
     if one.label == UNKNOWN:
         return usual
     if one.label not in names:

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.model import FeelModel
 from odometry.modes.answers import candidates, disagreements, named_modes
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.camera_prior import SeenGround, seen_labels
+from odometry.modes.camera_prior import SeenTerrain, seen_labels
 from odometry.modes.detection import Score, score_of
 from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
@@ -83,7 +83,7 @@ class Followed:
         By motion alone.
     sighted : ModeTrack or None
         By motion and camera, and feel where there is a model of it; None without images.
-    seen : tuple of SeenGround
+    seen : tuple of SeenTerrain
     felt : ModeTrack or None
         By motion and feel; None without a model of feel.
     """
@@ -94,7 +94,7 @@ class Followed:
     signals: Signals
     motion: ModeTrack
     sighted: ModeTrack | None = None
-    seen: tuple[SeenGround, ...] = ()
+    seen: tuple[SeenTerrain, ...] = ()
     felt: ModeTrack | None = None
 
     @property
@@ -202,7 +202,7 @@ def followed(
     run: Run,
     mode_set: ModeSet,
     config: ModesConfig | None = None,
-    seen: Sequence[SeenGround] = (),
+    seen: Sequence[SeenTerrain] = (),
     *,
     feel: FeelModel | None = None,
     show_progress: bool = False,

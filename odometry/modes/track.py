@@ -9,7 +9,7 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.estimation.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.camera_prior import SeenGround, mode_chains
+from odometry.modes.camera_prior import SeenTerrain, mode_chains
 from odometry.modes.gyroscope_bias import bias_is_open, bias_readings, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_beliefs import ModeBeliefs, ModeEstimators
@@ -30,7 +30,7 @@ def follow_modes(
     run: Run,
     mode_set: ModeSet,
     config: ModesConfig | None = None,
-    seen: Sequence[SeenGround] = (),
+    seen: Sequence[SeenTerrain] = (),
     *,
     show_progress: bool = False,
 ) -> ModeTrack:
@@ -41,7 +41,7 @@ def follow_modes(
     run : Run
     mode_set : ModeSet
     config : ModesConfig, optional
-    seen : sequence of SeenGround
+    seen : sequence of SeenTerrain
         What vision saw; without it motion alone decides.
     show_progress : bool
 
@@ -78,7 +78,7 @@ def follow_signals(
     signals: Signals,
     mode_set: ModeSet,
     config: ModesConfig | None = None,
-    seen: Sequence[SeenGround] = (),
+    seen: Sequence[SeenTerrain] = (),
     *,
     show_progress: bool = False,
 ) -> ModeTrack:

@@ -172,16 +172,16 @@ def _followed(
     feel: "FeelModel | None",
     span: "Span",
 ) -> "Followed":
-    from odometry.modes.camera_prior import seen_grounds
+    from odometry.modes.camera_prior import seen_terrains
     from odometry.modes.followed import followed
     from terrain.cli.recordings import read_run, with_turns
 
     (run,) = with_turns([read_run(folder, span)])
-    grounds = () if seen is None else seen_grounds(seen, run)
-    if seen is not None and not grounds:
+    terrains = () if seen is None else seen_terrains(seen, run)
+    if seen is not None and not terrains:
         click.echo(
             f"Note: {seen}: vision named no terrain that {folder} gets to; the modes are "
             "recognised by motion alone",
             err=True,
         )
-    return followed(run, mode_set, config, grounds, feel=feel, show_progress=True)
+    return followed(run, mode_set, config, terrains, feel=feel, show_progress=True)

@@ -7,10 +7,10 @@ from odometry.errors import ParameterError, RunFolderError
 from odometry.modes.camera_prior import (
     BLIND_LENGTHS,
     PULLED_S,
-    SeenGround,
+    SeenTerrain,
     mode_chains,
-    seen_grounds,
     seen_labels,
+    seen_terrains,
 )
 from tests.odometry.modes.mode_examples import run_of
 
@@ -25,7 +25,7 @@ def seen(tmp_path):
     def read(rows, header=HEADER):
         file = tmp_path / "terrain.csv"
         file.write_text(header + "\n".join(rows) + "\n")
-        return seen_grounds(file, run_of(1.0))
+        return seen_terrains(file, run_of(1.0))
 
     return read
 
@@ -73,7 +73,7 @@ def test_a_file_of_something_else_is_reported(seen):
 def test_a_certain_sight_pulls_all_modes_within_its_time():
     """A chain of two exponential clocks: a mode without a label is left at both rates together."""
     dwell_s = np.array([10.0, 20.0, 40.0])
-    usual, pulled = mode_chains((SeenGround(3.0, "mud", 1.0),), NAMES, dwell_s)
+    usual, pulled = mode_chains((SeenTerrain(3.0, "mud", 1.0),), NAMES, dwell_s)
     np.testing.assert_allclose(np.diag(usual.rates), -1 / dwell_s)
     from_ice, from_mud, from_tar = pulled.rates
     assert from_ice == pytest.approx([-0.1 - 1 / PULLED_S, 0.05 + 1 / PULLED_S, 0.05])
@@ -83,25 +83,25 @@ def test_a_certain_sight_pulls_all_modes_within_its_time():
 
 def test_a_source_no_surer_than_chance_pulls_nothing():
     dwell_s = np.full(3, 20.0)
-    seen = (SeenGround(0.0, "mud", 1 / 3), SeenGround(1.0, "unknown", 1.0))
+    seen = (SeenTerrain(0.0, "mud", 1 / 3), SeenTerrain(1.0, "unknown", 1.0))
     usual, by_chance, unknown = mode_chains(seen, NAMES, dwell_s)
     np.testing.assert_allclose(by_chance.rates, usual.rates, atol=1e-15)
     np.testing.assert_array_equal(unknown.rates, usual.rates)
-    doubtful = mode_chains((SeenGround(0.0, "mud", 2 / 3),), NAMES, dwell_s)[1]
+    doubtful = mode_chains((SeenTerrain(0.0, "mud", 2 / 3),), NAMES, dwell_s)[1]
     assert doubtful.rates[0, 1] == pytest.approx(0.025 + 0.5 / PULLED_S)
 
 
 def test_one_mode_alone_is_never_left():
-    (_, one) = mode_chains((SeenGround(0.0, "ice", 0.9),), ("ice",), np.array([5.0]))
+    (_, one) = mode_chains((SeenTerrain(0.0, "ice", 0.9),), ("ice",), np.array([5.0]))
     assert not one.rates.any()
 
 
 @pytest.mark.parametrize(
     ("one", "message"),
     [
-        (SeenGround(3.0, "sand", 0.9), "'sand' at 3 s, which is no mode; expected one of ice, mud"),
-        (SeenGround(3.0, "ice", 1.5), "confidence 1.5 at 3 s, expected 0 to 1"),
-        (SeenGround(3.0, "ice", float("nan")), "confidence nan"),
+        (SeenTerrain(3.0, "sand", 0.9), "'sand' at 3 s, which is no mode; expected one of ice, m"),
+        (SeenTerrain(3.0, "ice", 1.5), "confidence 1.5 at 3 s, expected 0 to 1"),
+        (SeenTerrain(3.0, "ice", float("nan")), "confidence nan"),
     ],
 )
 def test_what_cannot_be_weighed_is_reported(one, message):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.camera_prior import PULLED_S, SeenGround
+from odometry.modes.camera_prior import PULLED_S, SeenTerrain
 from odometry.modes.files import content_of, write_modes, write_runs
 from odometry.modes.followed import MOTION, SIGHTED, Followed, followed
 from odometry.modes.track import ModesConfig
@@ -69,7 +69,7 @@ def test_sight_at_the_start_decides_before_motion_does():
     """The run begins with the shares that the chain has in the long run."""
     leaves, pulled = 1 / 20.0, 0.98 / PULLED_S
     ice = leaves / (2 * leaves + pulled)
-    sight = (SeenGround(0.0, "tar", 0.99),)
+    sight = (SeenTerrain(0.0, "tar", 0.99),)
     both = followed(run_of(TURNS, labels=HALVES), velocity_set(), seen=sight)
     assert both.motion.probabilities[0] == pytest.approx([0.5, 0.5])
     assert both.sighted.probabilities[0] == pytest.approx([ice, 1 - ice])
@@ -78,7 +78,7 @@ def test_sight_at_the_start_decides_before_motion_does():
 
 def test_sight_that_lies_is_argued_with():
     config = ModesConfig(lasting_s=1.0)
-    sight = (SeenGround(0.0, "tar", 0.9),)
+    sight = (SeenTerrain(0.0, "tar", 0.9),)
     lie = followed(run_of(1.0, labels=["ice"] * 400), velocity_set(), config, sight)
     argued = lie.disagreements
     assert {(seen, felt) for _, _, seen, felt in argued} == {("tar", "ice")}
@@ -187,7 +187,7 @@ def test_the_numbers_are_those_of_the_score_and_none_is_nan(halves, tmp_path):
 
 
 def test_a_table_with_sight_goes_when_there_is_none(halves, tmp_path):
-    sight = (SeenGround(1.0, "tar", 0.9),)
+    sight = (SeenTerrain(1.0, "tar", 0.9),)
     with_sight = followed(halves.run, halves.mode_set, seen=sight)
     write_modes(with_sight, tmp_path)
     rows = rows_of(tmp_path / "modes_with_sight.csv")

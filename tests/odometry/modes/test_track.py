@@ -6,7 +6,7 @@ import pytest
 from odometry.errors import ConfigError, ParameterError, RunFolderError
 from odometry.modes import velocity
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
-from odometry.modes.camera_prior import SeenGround
+from odometry.modes.camera_prior import SeenTerrain
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.track import ModesConfig, follow_modes, follow_signals, judged_signals
 from odometry.modes.traction import TractionModes
@@ -181,17 +181,17 @@ def test_sight_decides_what_motion_leaves_open(straight):
     """From the place of the label on, and not before; a label of even odds changes nothing."""
     motion = follow_modes(straight, SET).probabilities
     for column, name in enumerate(NAMES):
-        sighted = follow_modes(straight, SET, seen=(SeenGround(4.0, name, 0.98),)).probabilities
+        sighted = follow_modes(straight, SET, seen=(SeenTerrain(4.0, name, 0.98),)).probabilities
         row = round(4.0 / STEP_S)
         np.testing.assert_array_equal(sighted[:row], motion[:row])
         assert (sighted[row:, column] > motion[row:, column]).all()
         assert (sighted[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
-    guessed = follow_modes(straight, SET, seen=(SeenGround(4.0, "tar", 0.5),)).probabilities
+    guessed = follow_modes(straight, SET, seen=(SeenTerrain(4.0, "tar", 0.5),)).probabilities
     np.testing.assert_allclose(guessed, motion, atol=1e-12)
 
 
 def test_motion_overrides_sight_that_is_wrong(run):
-    seen = [SeenGround(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
+    seen = [SeenTerrain(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
     motion, both = (follow_modes(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
     assert (both[400:] > 0.5).mean() > 0.9
     assert (both < motion).mean() > 0.95  # it is heard, though
@@ -201,7 +201,7 @@ def test_a_robot_that_stands_learns_from_the_camera_alone():
     """Rates from ice to tar and back: 1/20 a second, and 0.8 more for odds of 0.9 from 2 s on."""
     t = STEP_S * np.arange(500)
     still = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": 0.3 * np.sin(t)}
-    track = follow_modes(run_of_tables(still), SET, seen=(SeenGround(2.0, "tar", 0.9),))
+    track = follow_modes(run_of_tables(still), SET, seen=(SeenTerrain(2.0, "tar", 0.9),))
     there, back = 0.05 + 0.8, 0.05
     settled = there / (there + back)
     left = np.exp(-(there + back) * np.maximum(t - 2.0 + STEP_S, 0.0))
@@ -211,7 +211,7 @@ def test_a_robot_that_stands_learns_from_the_camera_alone():
 
 def test_sight_of_what_is_no_mode_is_refused(run):
     with pytest.raises(ParameterError, match="'mud'"):
-        follow_modes(run, SET, seen=(SeenGround(1.0, "mud", 0.9),))
+        follow_modes(run, SET, seen=(SeenTerrain(1.0, "mud", 0.9),))
 
 
 def test_a_run_without_a_yaw_rate_is_refused(run):

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from odometry.modes.camera_prior import SeenGround
+from odometry.modes.camera_prior import SeenTerrain
 from odometry.modes.files import content_of
 from odometry.modes.followed import followed
 from odometry.modes.mode_set import NONE_OF_THESE
@@ -52,7 +52,7 @@ def test_where_the_camera_names_a_terrain_that_the_motion_does_not_fit_it_is_sai
     """On what turns twice as much as the widest mode from 0 s on, the camera says ice."""
     run = run_of(np.repeat([4.0], 400), labels=ICE)
     end_s = float(run.odometry.stamps_s[-1])
-    found = followed(run, velocity_set(), seen=(SeenGround(0.0, "ice", 0.9),))
+    found = followed(run, velocity_set(), seen=(SeenTerrain(0.0, "ice", 0.9),))
     unfit_s, names = found.unfit_while_seen
     assert names == ("ice",)
     assert 0.5 * end_s < unfit_s <= end_s

@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from odometry.modes.camera_prior import SeenGround
+from odometry.modes.camera_prior import SeenTerrain
 from odometry.modes.followed import Followed, followed
 from odometry.modes.track import ModesConfig
 from odometry.report import mode_figures, mode_panels, modes_page
@@ -102,7 +102,7 @@ def test_long_runs_are_drawn_in_part_with_both_ends(monkeypatch):
 def grounds():
     """Ice, then tar, with a camera that labels wrongly."""
     turns, labels = np.repeat([1.0, 2.0], 200), ["ice"] * 200 + ["tar"] * 200
-    sight = (SeenGround(0.0, "tar", 0.8),)
+    sight = (SeenTerrain(0.0, "tar", 0.8),)
     return followed(run_of(turns, labels=labels), velocity_set(), seen=sight)
 
 
