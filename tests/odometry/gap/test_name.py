@@ -1,6 +1,7 @@
 """What is hidden in blind cases is named, at the noise of the issue; one seed of every effect.
 
-Twenty seeds of every kind, at three levels of noise: `tests/studies/gap_cases.py`.
+Twenty seeds of every kind, at three levels of noise: `tests/studies/gap_cases.py`. A slope by
+contact forces is named in notebook 06, whose outputs are compared.
 """
 
 import pytest
@@ -15,7 +16,7 @@ from tests.blind.cases import FORMULA, make_case
 PAIR = "wheel_scale+lateral_skid", 3
 SINGLE = tuple(kind for kind in FORMULA if kind not in PAIR[0].split("+"))
 LEAST_CLOSED = {**dict.fromkeys(SINGLE, 0.9), "unknown_pull": 0.5}  # of the held-out excess
-CASES = (*((kind, 0) for kind in (*SINGLE, "unknown_pull", "none", "contact_slope")), PAIR)
+CASES = (*((kind, 0) for kind in (*SINGLE, "unknown_pull", "none")), PAIR)
 
 
 # Of each run of 160 s with an effect this span is taken, to be quick, around moments it needs.
@@ -23,7 +24,6 @@ SPAN = Span(0.0, 80.0)
 SPANS = {
     "inertia": Span(0.0, 50.0),
     PAIR[0]: Span(0.0, 50.0),
-    "contact_slope": Span(0.0, 40.0),
     "lever_arm": Span(0.0, 40.0),
     "traction_loss": Span(30.0, 130.0),
     "clock_step": Span(0.0, 160.0),
