@@ -1,6 +1,7 @@
 """What a recording holds, cleaned: speeds, yaw rates and poses, and the motion between stamps."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -25,10 +26,15 @@ class CleanedRecording:
     run : Run
     left_out_s : tuple of (float, float)
         Run time [s]: windows that touch these are left out.
+    answers : dict
+        What `once` keeps, by the function that found it.
     """
 
     run: Run
     left_out_s: tuple[tuple[float, float], ...] = ()
+    answers: dict[Callable[..., object], object] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @cached_property
     def stamps_s(self) -> FloatArray:

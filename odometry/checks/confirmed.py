@@ -1,6 +1,6 @@
 """Causes that are undone: what then still differs says whether they were the right ones."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from odometry.checks.catalogue import CATALOGUE
 from odometry.checks.disagreement import against_slip, lasting_disagreements, scales_apart
@@ -8,7 +8,6 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.strange_parts import strange_part
 from odometry.checks.undo import Mend, between, in_turn
-from odometry.run import Run
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
 # Their time is left out: what then differs was not of the treads in it.
@@ -33,7 +32,7 @@ TRIED_ALONE = frozenset(
     | {"treads_unequal", "tread_scale_changed", "dropped_speeds"}
 )
 
-Found = Callable[[Evidence], list[Finding]]
+Found = Callable[[Evidence], Iterator[Finding]]
 
 
 def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Finding]:
@@ -50,7 +49,10 @@ def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Fin
 def _explains_all(evidence: Evidence, causes: Sequence[Finding], find: Found) -> Finding | None:
     """The first cause that leaves no warning when it alone is undone."""
     for cause in causes:
-        if cause.mend is not None and not _warnings(find(Evidence(cause.mend(evidence.run)))):
+        if cause.mend is None:
+            continue
+        left = find(Evidence(cause.mend(evidence.run)))
+        if not any(finding.level is Level.WARNING for finding in left):
             return cause
     return None
 
@@ -81,15 +83,16 @@ def confirmed(evidence: Evidence, found: Sequence[Finding], find: Found) -> list
         return _unnamed(found, factors, apart) if apart else list(found)
     mends: list[Mend] = [finding.mend for finding in causes if finding.mend is not None]
     cuts = sorted(span[0] for finding in jumps for span in finding.spans_s)
-    parts = _parts(in_turn(*mends)(evidence.run), cuts, spans)
-    left = _left(parts)
-    whole = Evidence(in_turn(*mends)(evidence.run), spans)
+    changed = bool(mends or spans)
+    whole = Evidence(in_turn(*mends)(evidence.run), spans) if changed else evidence
+    left = _left(_parts(whole, cuts))
     if cuts:  # jumps are outliers of the whole, parts may be short
         more = scales_apart(whole), strange_part(whole, cuts)
         left = list(dict.fromkeys([*left, *filter(None, more)]))
     elif not left and mends and not factors:  # which cannot be undone
         left = [finding.seen for finding in find(whole) if finding.name == DISAGREE]
-    only = _explains_all(evidence, causes, find) if left and len(warnings) > 1 else None
+    others_alone = [cause for cause in causes if cause.name not in TRIED_ALONE]  # before
+    only = _explains_all(evidence, others_alone, find) if left and len(warnings) > 1 else None
     if only is not None:
         return [only, *_notes(found)]
     return _unnamed(found, [*causes, *jumps, *lost, *factors], left) if left else list(found)
@@ -99,12 +102,11 @@ def _warnings(found: Iterable[Finding]) -> list[Finding]:
     return [finding for finding in found if finding.level is Level.WARNING]
 
 
-def _parts(
-    run: Run, cuts_s: Sequence[float], left_out_s: tuple[tuple[float, float], ...]
-) -> list[Evidence]:
+def _parts(whole: Evidence, cuts_s: Sequence[float]) -> list[Evidence]:
     """What is said between cuts; what is left out is in run time of the whole."""
     if not cuts_s:
-        return [Evidence(run, left_out_s)]
+        return [whole]
+    run = whole.run
     first_s, last_s = run.odometry.stamps_s[[0, -1]]
     begins = [first_s, *(run.began_s + cut_s + AROUND_S for cut_s in cuts_s)]
     ends = [*(run.began_s + cut_s - AROUND_S for cut_s in cuts_s), last_s]
@@ -114,10 +116,10 @@ def _parts(
         part = between(run, begin_s, end_s)
         if len(part.odometry) > 2:
             back_s = part.odometry.stamps_s[0] - first_s
-            moved = tuple((b - back_s, e - back_s) for b, e in left_out_s)
+            moved = tuple((b - back_s, e - back_s) for b, e in whole.left_out_s)
             parts.append(Evidence(part, moved))
     compared_s = sum(part.duration_s for part in parts)
-    return parts if compared_s > HALF * (last_s - first_s) else [Evidence(run, left_out_s)]
+    return parts if compared_s > HALF * (last_s - first_s) else [whole]
 
 
 def _left(parts: Sequence[Evidence]) -> list[str]:

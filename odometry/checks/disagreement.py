@@ -13,6 +13,7 @@ from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.gyroscope import drifts_at_rest
 from odometry.checks.heading_spans import heading_spans
 from odometry.checks.little_explained import little_explained
+from odometry.checks.once import once
 from odometry.checks.position_differences import (
     paths_apart,
     positions_apart,
@@ -44,6 +45,7 @@ def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[F
         yield disagreement("; ".join(filter(None, seen)))
 
 
+@once
 def lasting_disagreements(evidence: Evidence) -> list[str]:
     """By what sensors differ all along, in absolute terms: more than noise and slip explain."""
     seen = (
@@ -226,10 +228,8 @@ def _turn_ratio(evidence: Evidence, apart: float, correlated: float) -> Relation
 
 
 def _ratio_words(fit: Relation) -> str:
-    return (
-        f"measured yaw turns by {fit.slope:.3f} +- {fit.slope_sigma:.3f} times what the gyroscope "
-        "turns"
-    )
+    times = f"{fit.slope:.3f} +- {fit.slope_sigma:.3f} times"
+    return f"measured yaw turns by {times} what the gyroscope turns"
 
 
 def headings_apart(evidence: Evidence) -> str:

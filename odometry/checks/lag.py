@@ -131,13 +131,19 @@ def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
     """Correlation (m,) of one signal (n,) with each of others (m, n), where both are known."""
     correlations = np.full(len(others), np.nan)
     count = max(TOGETHER // len(one), 1)
-    for rows in np.split(np.arange(len(others)), range(count, len(others), count)):
-        known = np.isfinite(others[rows]) & np.isfinite(one)
+    for begin in range(0, len(others), count):
+        some = others[begin : begin + count]
+        known = np.isfinite(some) & np.isfinite(one)
         counts = known.sum(axis=1)
-        a, b = (_centred(of, known, counts) for of in (one, others[rows]))
-        sizes = np.sqrt(np.sum(a**2, axis=1) * np.sum(b**2, axis=1))
+        if counts.min() == len(one):
+            a, b = one - one.mean(), some - some.mean(axis=1)[:, None]
+            squares, products = np.sum(a**2), b @ a
+        else:
+            a, b = (_centred(of, known, counts) for of in (one, some))
+            squares, products = np.sum(a**2, axis=1), np.sum(a * b, axis=1)
+        sizes = np.sqrt(squares * np.einsum("ij,ij->i", b, b))
         clear = (sizes > LEAST_SIZE) & (counts >= LEAST_PIECE_S / GRID_S / 2)
-        correlations[rows[clear]] = np.sum(a * b, axis=1)[clear] / sizes[clear]
+        correlations[begin : begin + count][clear] = products[clear] / sizes[clear]
     return correlations
 
 

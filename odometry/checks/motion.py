@@ -1,5 +1,6 @@
 """What treads, gyroscope and poses say of the motion between the same stamps."""
 
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
@@ -199,10 +200,10 @@ def _window(
 
 def _spaced(pose_s: FloatArray, rows: IntArray, apart_s: float) -> IntArray:
     """Rows at least so far apart."""
-    stamps_s, chosen, place = pose_s[rows], [], 0
+    stamps_s, chosen, place = pose_s[rows].tolist(), [], 0
     while place < len(rows):
         chosen.append(place)
-        place = int(np.searchsorted(stamps_s, stamps_s[place] + apart_s - 1e-6))
+        place = bisect_left(stamps_s, stamps_s[place] + apart_s - 1e-6)
     return np.asarray(rows[chosen], dtype=np.int64)
 
 

@@ -32,14 +32,16 @@ def spikes(values: FloatArray) -> BoolArray:
     fastest = np.quantile(np.abs(values), ordinary)
     least = max(NEIGHBOURS * float(usual_step), OF_FASTEST * float(fastest), 1e-9)
     found = np.zeros(len(values), dtype=np.bool_)
+    lowest = highest = values[1:-1]  # of so many samples from each on
     for length in range(1, LONGEST + 1):
         before, after = values[: -length - 1], values[length + 1 :]
-        inside = np.lib.stride_tricks.sliding_window_view(values[1:-1], length)
-        higher = inside.min(axis=1) - np.maximum(before, after)
-        lower = np.minimum(before, after) - inside.max(axis=1)
+        higher = lowest - np.maximum(before, after)
+        lower = np.minimum(before, after) - highest
         begins = np.flatnonzero(np.maximum(higher, lower) > least) + 1
         for offset in range(length):
             found[begins + offset] = True
+        lowest = np.minimum(lowest[:-1], values[length + 1 : -1])
+        highest = np.maximum(highest[:-1], values[length + 1 : -1])
     return found
 
 

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence import Evidence
+from odometry.checks.once import once
 from odometry.checks.steps import reckoned, without_window_changes
 
 SPAN_S = 10.0
@@ -65,6 +66,7 @@ def positions_apart(evidence: Evidence) -> str:
     )
 
 
+@once
 def _spans(evidence: Evidence) -> PositionSpans | None:
     pose, scale = evidence.run.pose, evidence.metres_per_metre
     if pose is None or scale is None or evidence.heading is None or evidence.poses_used is None:

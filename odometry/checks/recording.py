@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -137,13 +138,16 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 
 
-def _found(evidence: Evidence) -> list[Finding]:
+def _found(evidence: Evidence) -> Iterator[Finding]:
     """All findings; where one tread was lost, nothing else is said of that time."""
-    lost = list(stuck_encoders(evidence))
-    spans = (span for finding in lost for span in finding.spans_s)
-    left = replace(evidence, left_out_s=(*evidence.left_out_s, *spans)) if lost else evidence
-    found = [*lost, *(finding for check in CHECKS for finding in check(left))]
-    return [*found, *sensors_disagree(left, found)]
+    found = list(stuck_encoders(evidence))
+    yield from found
+    spans = [span for finding in found for span in finding.spans_s]
+    left = replace(evidence, left_out_s=(*evidence.left_out_s, *spans)) if found else evidence
+    for finding in chain.from_iterable(check(left) for check in CHECKS):
+        found.append(finding)
+        yield finding
+    yield from sensors_disagree(left, found)
 
 
 def _skipped(evidence: Evidence) -> Iterator[str]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.least_squares import independent, least_squares, variances
 
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
@@ -69,33 +70,35 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     Outliers are left out by their distance from the fit in units of 1.4826 times the median of
     absolute residuals (least trimmed squares by repeated weighting, Rousseeuw and Leroy 1987).
     """
-    design = np.stack(columns, axis=-1)
-    measured = np.isfinite(target) & np.isfinite(design).all(axis=1)
-    if measured.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[measured]) < len(columns):
+    rows = np.stack(columns)
+    measured = np.isfinite(target) & np.isfinite(rows).all(axis=0)
+    known, of_known = rows[:, measured], target[measured]
+    if len(of_known) < LEAST_WINDOWS or not independent(known):
         return None
-    coefficients, kept = _least_absolute(design, target, measured), measured
+    coefficients, kept = _least_absolute(known, of_known), np.ones(len(of_known), dtype=np.bool_)
     for _ in range(ROUNDS):
-        residuals = target - design @ coefficients
-        scale = 1.4826 * np.median(np.abs(residuals[measured]))
-        before, kept = kept, measured & (np.abs(residuals) <= CUTOFF * scale + 1e-12)
-        if kept.sum() < LEAST_WINDOWS or np.linalg.matrix_rank(design[kept]) < len(columns):
+        sizes = np.abs(of_known - coefficients @ known)
+        scale = 1.4826 * np.median(sizes)
+        before, kept = kept, sizes <= CUTOFF * scale + 1e-12
+        if kept.sum() < LEAST_WINDOWS or not independent(known[:, kept]):
             kept = before
-        coefficients = _least_squares(design[kept], target[kept])
+        coefficients = least_squares(known[:, kept], of_known[kept])
         if (kept == before).all():
             break
-    residuals = target - design @ coefficients
-    variance = np.sum(residuals[kept] ** 2) / max(int(kept.sum()) - len(columns), 1)
-    curvature = design[kept].T @ design[kept]
-    sigmas = np.sqrt(np.maximum(variance * np.diag(np.linalg.pinv(curvature)), 0.0))
+    left = of_known - coefficients @ known
+    fitted, of_fitted = known[:, kept], of_known[kept]
+    variance = np.sum(left[kept] ** 2) / max(len(of_fitted) - len(columns), 1)
+    all_kept = measured.copy()
+    all_kept[measured] = kept
     return Relation(
         coefficients,
-        sigmas,
-        _correlation(target[kept], (design @ coefficients)[kept]),
-        kept,
-        int(measured.sum()),
-        residuals,
-        1 - float(np.sum(residuals[measured] ** 2) / max(np.sum(target[measured] ** 2), 1e-300)),
-        _distinct(design[kept], target[kept]),
+        np.sqrt(np.maximum(variance * variances(fitted), 0.0)),
+        _correlation(of_fitted, coefficients @ fitted),
+        all_kept,
+        len(of_known),
+        target - coefficients @ rows,
+        1 - float(np.sum(left**2) / max(np.sum(of_known**2), 1e-300)),
+        _distinct(fitted, of_fitted),
     )
 
 
@@ -109,34 +112,31 @@ def pieces(target: FloatArray, *columns: FloatArray) -> list[Relation]:
     return [piece for piece in found if piece is not None]
 
 
-def _distinct(design: FloatArray, target: FloatArray) -> bool:
+def _distinct(columns: FloatArray, target: FloatArray) -> bool:
     """Whether the weakest direction of the scaled columns is wide, or explains the target.
 
     Scaled singular values: Belsley, Kuh and Welsch 1980, chapter 3.
     """
-    lengths = np.linalg.norm(design, axis=0)
+    lengths = np.linalg.norm(columns, axis=1)
     if not (lengths > 0).all():
         return False
-    directions, sizes, _ = np.linalg.svd(design / lengths, full_matrices=False)
-    if sizes[-1] > LEAST_ANGLE_RAD * sizes[0]:
+    scaled = columns / lengths[:, None]
+    squares = np.linalg.eigvalsh(scaled @ scaled.T)  # of the singular values, the least first
+    if squares[0] > LEAST_ANGLE_RAD**2 * squares[-1]:
         return True
+    directions, _, _ = np.linalg.svd(scaled.T, full_matrices=False)
     parts = directions.T @ target
     left = max(float(np.sum(target**2) - np.sum(parts**2)), 0.0)
     return left < EXPLAINS * (left + float(parts[-1] ** 2))
 
 
-def _least_squares(design: FloatArray, target: FloatArray) -> FloatArray:
-    return np.asarray(np.linalg.lstsq(design, target, rcond=None)[0], dtype=np.float64)
-
-
-def _least_absolute(design: FloatArray, target: FloatArray, measured: BoolArray) -> FloatArray:
+def _least_absolute(columns: FloatArray, target: FloatArray) -> FloatArray:
     """A start that a third of outliers does not move: least absolute residuals, by weights."""
-    design, target = design[measured], target[measured]
-    coefficients = _least_squares(design, target)
+    coefficients = least_squares(columns, target)
     for _ in range(ROUNDS):
-        away = np.abs(target - design @ coefficients)
-        weights = 1 / np.sqrt(np.maximum(away, 1e-3 * np.mean(away) + 1e-12))
-        coefficients = _least_squares(design * weights[:, None], target * weights)
+        away = np.abs(target - coefficients @ columns)
+        weights = 1 / np.sqrt(np.maximum(away, 1e-3 * away.sum() / len(away) + 1e-12))
+        coefficients = least_squares(columns * weights, target * weights)
     return coefficients
 
 

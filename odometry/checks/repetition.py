@@ -7,6 +7,7 @@ from math import comb
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.least_squares import least_squares
 from odometry.checks.resampling import Sampled, low_pass, ways
 
 MOST_ROWS = 3000  # the liveliest ones, in which delay and filter are searched
@@ -90,35 +91,31 @@ class _Trial:
     sources: FloatArray
     sampled: Sampled
 
-    def columns(self, delay_s: float, smoothed_s: float) -> FloatArray:
-        """Sources (N, P) through the filter, at the stamps less the delay."""
-        through = low_pass(self.sources, smoothed_s, float(np.median(np.diff(self.source_s))))
-        return np.stack(
-            [self.sampled(self.at_s, delay_s, self.source_s, one) for one in through.T], axis=-1
-        )
+    def columns(self, sources: FloatArray, delay_s: float, smoothed_s: float) -> FloatArray:
+        """Sources (S, P) through the filter, at the stamps (N,) less the delay: (P, N)."""
+        through = low_pass(sources, smoothed_s, self._source_period_s)
+        return np.stack([self.sampled(self.at_s, delay_s, self.source_s, one) for one in through.T])
 
     def left(self, delay_s: float, smoothed_s: float) -> float:
         """Share of the squares of the changes that is left."""
         return 1 - self.fit(delay_s, smoothed_s).of_changes
 
     def fit(self, delay_s: float, smoothed_s: float) -> Repetition:
-        columns = self.columns(delay_s, smoothed_s)
-        changes, of_columns = (
-            np.diff(of, ORDER, axis=0)[self._ordinary] for of in (self.values, columns)
-        )
-        of_columns = of_columns @ np.linalg.lstsq(of_columns, changes, rcond=None)[0]
-        design = np.column_stack([columns, np.ones(len(columns))])
-        solution = np.linalg.lstsq(design, self.values, rcond=None)[0]
-        coefficients = np.asarray(solution[:-1], dtype=np.float64)
+        columns, changes = self.columns(self.sources, delay_s, smoothed_s), self._changes
+        of_columns = np.diff(columns, ORDER)[:, self._ordinary]
+        design = np.vstack([columns, np.ones(len(self.values))])
+        solution = least_squares(design, self.values)
+        coefficients = solution[:-1]
         digits = np.append(coefficients * self._digits, self._digit)
         rounded = float(np.sum(digits**2)) / 12
         left_of_changes = OF_NOISE * rounded
         if left_of_changes > ROUNDED * float(np.mean(changes**2)):
             rounded = left_of_changes = 0.0
-        of_changes = _explained(changes, of_columns, left_of_changes)
+        fitted = least_squares(of_columns, changes) @ of_columns
+        of_changes = _explained(changes, fitted, left_of_changes)
         return Repetition(
             of_changes,
-            _explained(self.values, design @ solution, rounded),
+            _explained(self.values, solution @ design, rounded),
             delay_s,
             smoothed_s,
             coefficients,
@@ -130,6 +127,15 @@ class _Trial:
         """Changes (N - ORDER,) without the largest: a few steps of any drive are alike in all."""
         sizes = np.abs(np.diff(self.values, ORDER))
         return np.asarray(sizes <= np.quantile(sizes[sizes > 0], ORDINARY))
+
+    @cached_property
+    def _changes(self) -> FloatArray:
+        """The ordinary ones of the values."""
+        return np.asarray(np.diff(self.values, ORDER)[self._ordinary])
+
+    @cached_property
+    def _source_period_s(self) -> float:
+        return float(np.median(np.diff(self.source_s)))
 
     @cached_property
     def _digits(self) -> FloatArray:
@@ -176,16 +182,11 @@ def _searched(trial: _Trial) -> tuple[float, float, float, Sampled] | None:
 
 def _shift(trial: _Trial, smoothed_s: float, period_s: float) -> tuple[float, float]:
     """Correlation of the changes at the best whole row of delay, and that delay."""
-    from scipy.signal import correlate  # noqa: PLC0415 - slow to load
-
     changes = np.diff(trial.values)
-    of_source = np.diff(trial.columns(0.0, smoothed_s)[:, 0])
+    of_source = np.diff(trial.columns(trial.sources[:, :1], 0.0, smoothed_s)[0])
     reach = max(round(MOST_DELAY_S / period_s), 1)
     size = float(np.sqrt(np.sum(changes**2) * np.sum(of_source**2)))
-    middle = len(changes) - 1
-    products = np.abs(correlate(changes, of_source, method="fft"))[middle - reach :][
-        : 2 * reach + 1
-    ]
+    products = np.abs(np.correlate(np.pad(changes, reach), of_source))
     best = int(np.argmax(products))
     return float(products[best]) / max(size, 1e-300), (best - reach) * period_s
 

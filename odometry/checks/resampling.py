@@ -1,6 +1,7 @@
 """How a program may take the rows of one column at the stamps of another."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -13,8 +14,9 @@ Sampled = Callable[[FloatArray, float, FloatArray, FloatArray], FloatArray]
 
 def ways(at_s: FloatArray, source_s: FloatArray) -> tuple[Sampled, ...]:
     """How a program may take a source at stamps (N,) less a delay."""
-    same = np.array_equal(at_s, source_s)
-    return (_between_rows, _by_row) if same else (_between_rows, _held, _mean_to_next)
+    if not np.array_equal(at_s, source_s):
+        return _between_rows, _held, _mean_to_next
+    return _between_rows, partial(_by_row, float(np.median(np.diff(source_s))))
 
 
 def _between_rows(
@@ -24,10 +26,10 @@ def _between_rows(
 
 
 def _by_row(
-    at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
+    period_s: float, at_s: FloatArray, delay_s: float, source_s: FloatArray, source: FloatArray
 ) -> FloatArray:
     """The same number of rows later throughout, however uneven the stamps are."""
-    rows = np.searchsorted(source_s, at_s) - round(delay_s / float(np.median(np.diff(source_s))))
+    rows = np.searchsorted(source_s, at_s) - round(delay_s / period_s)
     return np.asarray(source[np.clip(rows, 0, len(source) - 1)])
 
 

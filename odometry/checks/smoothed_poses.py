@@ -118,13 +118,8 @@ def _averaged(columns: AnyArray, half: int) -> AnyArray:
 
 
 def _off(stamps_s: FloatArray, positions: AnyArray, grid_s: FloatArray, path: AnyArray) -> float:
-    at_poses = np.array(
-        [
-            np.interp(stamps_s, grid_s, c.real) + 1j * np.interp(stamps_s, grid_s, c.imag)
-            for c in path
-        ]
-    )
-    design = np.vstack([at_poses, np.ones(len(stamps_s))]).T
+    at_poses = [np.interp(stamps_s, grid_s, column) for column in path]
+    design = np.vstack([*at_poses, np.ones(len(stamps_s))]).T
     factors, *_ = np.linalg.lstsq(design, positions - positions.mean(), rcond=1e-9)
     left = positions - positions.mean() - design @ factors
     return float(np.sqrt(np.mean(np.abs(left) ** 2)))

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import CLEARLY, Evidence
+from odometry.checks.once import once
 from odometry.checks.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
@@ -82,6 +83,7 @@ def _lasting_by_treads_rad(evidence: Evidence) -> float:
     return lasting_turn_rad(m.difference_m / width_m, m.lasts_s)
 
 
+@once
 def gyroscope_sense(evidence: Evidence) -> Sense:
     """How the gyroscope's turns come from the treads."""
     m = evidence.uniform
@@ -90,6 +92,7 @@ def gyroscope_sense(evidence: Evidence) -> Sense:
     return sense(evidence.gyroscope_by_treads, evidence.gyroscope_by_difference, turned, lasting)
 
 
+@once
 def pose_sense(evidence: Evidence) -> Sense:
     """How measured turns come from the treads."""
     m, turns = evidence.turn_motion, evidence.pose_turn_rad

@@ -5,6 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.motion import Motion
+from odometry.checks.once import once
 from odometry.checks.relation import relation
 from odometry.checks.turn_signs import LEAST_TURN_RAD
 
@@ -13,6 +14,7 @@ CERTAIN = 8.0  # standard deviations
 SURELY = 0.9  # correlation in a part
 
 
+@once
 def turns_flip(evidence: Evidence) -> str:
     """Two sensors that turn together in one part, and against each other in another.
 

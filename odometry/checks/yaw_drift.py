@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.gyroscope import stationary_bias
 from odometry.checks.heading import far_and_straight, middle_rad
+from odometry.checks.once import once
 from odometry.checks.undo import Mend
 from odometry.run import Run
 
@@ -60,6 +62,7 @@ def course_drifts(evidence: Evidence) -> str:
     return f"the course of pose.csv turns by {drift.rate_rad_s:+.4f} rad/s against its yaw"
 
 
+@once
 def course_drift(evidence: Evidence) -> Drift | None:
     """The rate with which course and yaw agree best; None where they do as well without one."""
     m = evidence.motion
@@ -70,8 +73,8 @@ def course_drift(evidence: Evidence) -> Drift | None:
     off = (np.exp(1j * (m.course_rad - middle_rad(m.yaw_rad))) * np.sign(m.mean_m))[far]
     lasts_s = float(np.ptp(at_s))
     count = int(MOST_RAD_S * lasts_s / STEP_RAD)
-    rates = np.arange(-count, count + 1) * STEP_RAD / max(lasts_s, 1e-9)
-    agree = np.array([abs(np.mean(off * np.exp(-1j * rate * at_s))) for rate in rates])
+    rates = np.asarray(np.arange(-count, count + 1) * STEP_RAD / max(lasts_s, 1e-9), dtype=float)
+    agree = _agreements(off, at_s - at_s[0], rates)
     best = int(np.argmax(agree))
     rate = float(rates[best])
     if agree[best] < AGREED or 1 - agree[best] > EXPLAINS * (1 - agree[count]):
@@ -79,6 +82,17 @@ def course_drift(evidence: Evidence) -> Drift | None:
     if abs(rate) < LEAST_RAD_S or abs(rate) * lasts_s < LEAST_RAD:
         return None
     return Drift(rate, len(at_s))
+
+
+def _agreements(off: AnyArray, at_s: FloatArray, rates: FloatArray) -> FloatArray:
+    """Concentrations (R,) of directions (K,) that are turned back at evenly spaced rates (R,)."""
+    turned = off * np.exp(-1j * rates[0] * at_s)
+    further = np.exp(-1j * (rates[-1] - rates[0]) / max(len(rates) - 1, 1) * at_s)
+    agree = np.empty(len(rates))
+    for place in range(len(rates)):
+        agree[place] = abs(turned.mean())
+        turned = turned * further
+    return agree
 
 
 def _same(one: float, other: float) -> bool:

@@ -7,6 +7,7 @@ how much positions agree more than the mean of their neighbours does, while the 
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -56,25 +57,28 @@ def _step_of(stamps_s: FloatArray, places_m: FloatArray) -> float | None:
         if count < LEAST_POSES or _bins(places_m[used], means[used], least) > MOST_BINS:
             continue
         decided = True
-        steps, agreement, of_means = _agreements(places_m[used], means[used], least)
+        steps, agreement_of = _band(places_m[used], means[used], least)
+        agreement = agreement_of(places_m[used])
         by_chance = float(np.sqrt(np.log(BANDS * len(steps) / BY_CHANCE) / count))
-        sure = agreement - of_means > max(LEAST_AGREEMENT, by_chance)
+        needed = max(LEAST_AGREEMENT, by_chance)
+        if agreement.max() <= needed:
+            continue  # whatever the neighbours do
+        sure = agreement - agreement_of(means[used]) > needed
         place = int(np.argmax(np.where(sure, agreement, 0.0)))
         if sure[place] and agreement[place] > AS_GOOD * best:
             best, step = max(best, float(agreement[place])), float(steps[place])
     return step if decided else None
 
 
-def _agreements(
+def _band(
     places_m: FloatArray, means_m: FloatArray, least_m: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Steps (F,) of a band, and how well places (M,) and their means agree with each."""
+) -> tuple[FloatArray, Callable[[FloatArray], FloatArray]]:
+    """Steps (F,) of a band, and how well places (M,) or their means agree with each."""
     origin, width = float(min(places_m.min(), means_m.min())), BIN * least_m
     size = 1 << math.ceil(math.log2(FINER * _bins(places_m, means_m, least_m)))
-    of_places, of_means = (_phasors(of - origin, width, size) for of in (places_m, means_m))
     frequencies = np.fft.rfftfreq(size, width)
     inside = (frequencies > 1 / (BAND * least_m)) & (frequencies <= 1 / least_m)
-    return 1 / frequencies[inside], np.abs(of_places[inside]), np.abs(of_means[inside])
+    return 1 / frequencies[inside], lambda of: np.abs(_phasors(of - origin, width, size)[inside])
 
 
 def _bins(places_m: FloatArray, means_m: FloatArray, least_m: float) -> int:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.checks.lag import lag_between
+from odometry.checks.lag import _correlations, lag_between
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +35,15 @@ def test_periodic_motion_has_no_lag():
     assert (
         lag_between(lambda t: np.sin(5 * t - 1), lambda t: np.sin(5 * t), (0, 60), 0.5, 2) is None
     )
+
+
+@pytest.mark.parametrize("unknown", [0, 40])
+def test_correlations_are_of_what_both_know(rng, unknown):
+    """Also where every row of the others is known."""
+    one, others = rng.standard_normal(300), rng.standard_normal((300, 300))
+    others[:, 200 : 200 + unknown] = np.nan
+    others[0] = 2.0
+    known = np.isfinite(others[1])
+    with np.errstate(invalid="ignore"):
+        expected = np.corrcoef(one[known], others[:, known])[0, 1:]
+    np.testing.assert_allclose(_correlations(one, others), expected, atol=1e-12)

@@ -1,0 +1,53 @@
+"""Least squares of a few columns by their products, where these are far from dependent."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+
+# Columns whose angle has a smaller sine, whose lengths are further apart, or whose squares vanish
+# or overflow are left to a decomposition, which takes many times as long. Of the rest the normal
+# equations give twelve digits.
+LEAST_SINE, LEAST_LENGTH = 1e-2, 1e-4
+SQUARES = (1e-200, 1e100)
+
+
+def least_squares(columns: FloatArray, target: FloatArray) -> FloatArray:
+    """The coefficients (P,) of columns (P, K) by which least is left of a target (K,)."""
+    inverse = _inverse(columns)
+    if inverse is None:
+        return np.asarray(np.linalg.lstsq(columns.T, target, rcond=None)[0], dtype=np.float64)
+    return np.asarray(inverse @ (columns @ target))
+
+
+def independent(columns: FloatArray) -> bool:
+    """Whether none of the columns (P, K) follows from the others."""
+    known = _inverse(columns) is not None
+    return known or bool(np.linalg.matrix_rank(columns.T) == len(columns))
+
+
+def variances(columns: FloatArray) -> FloatArray:
+    """Variances (P,) of the coefficients of columns (P, K), where those of a target are one."""
+    inverse = _inverse(columns)
+    return np.diag(np.linalg.pinv(columns @ columns.T) if inverse is None else inverse)
+
+
+def _inverse(columns: FloatArray) -> FloatArray | None:
+    """The inverse (P, P) of the products of columns (P, K); None where it would not be exact."""
+    products = (columns @ columns.T).tolist()
+    squares = [products[place][place] for place in range(len(products))]
+    if not SQUARES[0] < min(squares) <= max(squares) < SQUARES[1]:
+        return None
+    if len(squares) == 1:
+        return np.array([[1 / squares[0]]])
+    if min(squares) < LEAST_LENGTH**2 * max(squares):
+        return None
+    if len(squares) == 2:
+        (first, both), (_, second) = products
+        over = first * second - both**2
+        if over < LEAST_SINE**2 * first * second:
+            return None
+        return np.array([[second / over, -both / over], [-both / over, first / over]])
+    lengths = np.sqrt(np.outer(squares, squares))
+    cosines = products / lengths
+    narrow = np.linalg.eigvalsh(cosines)[0] < LEAST_SINE**2
+    return None if narrow else np.asarray(np.linalg.inv(cosines) / lengths)
