@@ -52,6 +52,9 @@ class TerrainViews:
     size: tuple[int, int]
     turned: bool = False
     _kept: dict[str, "_Seen | None"] = field(default_factory=dict, repr=False)
+    _near: dict[tuple[Camera, str], Features | None] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     def upside_down(self) -> "TerrainViews":
         """The same images, turned by half a turn."""
@@ -80,8 +83,7 @@ class TerrainViews:
 
     def same(self, camera: Camera, first: str, second: str) -> Pixels | None:
         """Pixels of features on near terrain that look alike in two images, if there are enough."""
-        near = [self._near(camera, name) for name in (first, second)]
-        before, after = near
+        before, after = (self._near_features(camera, name) for name in (first, second))
         if before is None or after is None or min(len(before[0]), len(after[0])) < FEWEST:
             return None
         pairs = cv2.BFMatcher(cv2.NORM_HAMMING).knnMatch(before[1], after[1], k=2)
@@ -91,8 +93,13 @@ class TerrainViews:
         here = before[0][[one.queryIdx for one in alike]]
         return here, after[0][[one.trainIdx for one in alike]]
 
-    def _near(self, camera: Camera, name: str) -> Features | None:
-        found = self.features(name)
+    def _near_features(self, camera: Camera, name: str) -> Features | None:
+        """Those of near terrain, looked for once by each camera."""
+        if (camera, name) not in self._near:
+            self._near[camera, name] = self._near_by(camera, self.features(name))
+        return self._near[camera, name]
+
+    def _near_by(self, camera: Camera, found: Features | None) -> Features | None:
         if found is None:
             return None
         pixels = np.array(self.size) - 1.0 - found[0] if self.turned else found[0]

@@ -10,6 +10,7 @@ import odometry
 from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.recording import check_run
+from terrain.checks.terrain_views import TerrainViews
 
 COUNT = 24
 
@@ -24,6 +25,21 @@ def drive():
 def camera(drive):
     """The camera of `drive`."""
     return Camera.from_table(drive.settings["camera"])
+
+
+@pytest.fixture(scope="session", autouse=True)
+def looked_at_once(drive):
+    """The images of `drive` are looked at once, whatever run and camera they are given."""
+    look, views = TerrainViews._seen, {}
+
+    def seen(self, name):
+        if self.run.folder != drive.folder:
+            return look(self, name)
+        return look(views.setdefault(self.size, TerrainViews(drive, self.size)), name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TerrainViews, "_seen", seen)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,12 @@ import pytest
 
 import terrain
 from odometry.run import Run
+from terrain.camera import Camera
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_motion import POOR, image_motion
+from terrain.checks.terrain_views import TerrainViews
 from tests.studies.check_image_motion import moved, with_images
 
 
@@ -34,6 +36,20 @@ def test_steps_by_the_terrain_are_those_of_the_truth(drive, camera):
     moved = moved * np.exp(-1j * first[:, 2])
     assert np.abs(steps.steps[:, 0] + 1j * steps.steps[:, 1] - moved).max() < 0.02
     assert np.abs(steps.steps[:, 2] - (second - first)[:, 2]).max() < 0.02
+
+
+def test_near_terrain_is_looked_for_once_in_each_image_by_each_camera(drive, camera, monkeypatch):
+    views, looked = TerrainViews(drive, camera.image_size), []
+    look = Camera.pixels_to_ground
+    monkeypatch.setattr(
+        Camera, "pixels_to_ground", lambda self, of: looked.append(self) or look(self, of)
+    )
+    first, second, third = (str(name) for name in drive.images["file"][:3])
+    other = moved(camera, 2, lambda z: 2.0 * z)
+    for by in (camera, other):
+        views.same(by, first, second)
+        views.same(by, second, third)
+    assert looked == 3 * [camera] + 3 * [other]
 
 
 def test_nothing_is_odd_about_the_run_as_it_is(drive, camera):

@@ -26,14 +26,14 @@ def causes(run, camera):
     return {finding.name: finding.cause for finding in findings}
 
 
-@pytest.mark.parametrize("off_deg", [-8.0, 6.0])
-def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera, off_deg):
-    other = moved(camera, 4, lambda pitch: pitch + np.radians(off_deg))
+def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera):
+    """Another sign of it below, without a gyroscope."""
+    other = moved(camera, 4, lambda pitch: pitch - np.radians(8.0))
     found = causes(drive, other)
     assert set(found) == {"camera_lens"}
     fits, stated = map(float, re.findall(r"[0-9.]+\d", found["camera_lens"])[:2])
     assert fits == pytest.approx(np.degrees(camera.mount[4]), abs=0.3)
-    assert stated == pytest.approx(fits + off_deg, abs=0.3)
+    assert stated == pytest.approx(fits - 8.0, abs=0.3)
     assert found["camera_lens"].startswith("The camera points")
 
 
