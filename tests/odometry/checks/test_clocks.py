@@ -31,9 +31,8 @@ def of_rate(percent):
 @pytest.mark.parametrize(
     ("name", "percent"),
     [
-        (name, sign * size)
-        for name, size in zip((*REAL, "simulated"), (2.0, 3.0) * 3, strict=True)
-        for sign in (-1, 1)
+        *zip(REAL, (2.0, -3.0, -2.0, 3.0, 2.0), strict=True),
+        *(("simulated", percent) for percent in (-3.0, 3.0)),
     ],
 )
 def test_a_clock_that_runs_fast_or_slow_is_named_with_its_rate(shared_data, name, percent):

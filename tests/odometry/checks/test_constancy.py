@@ -59,7 +59,7 @@ def test_a_factor_that_depends_on_the_drive_is_no_scale(cause):
     assert not SCALES & set(named)
 
 
-@pytest.mark.parametrize("factor", [0.3, 0.5, 0.7])
+@pytest.mark.parametrize("factor", [0.3, 0.7])
 def test_a_scale_of_the_treads_is_named(factor):
     assert warnings(scaled(factor)(all_speeds())) == ["scale"]
 
@@ -130,8 +130,9 @@ def test_the_scale_of_one_side_holds_in_each_direction():
     forwards = treads(drive(speed, 0.5 * np.sin(at_s / 3)), left_forwards)
     always = treads(all_speeds(), lambda left, right: (0.6 * left, right))
     assert "treads_unequal" not in warnings(forwards)
-    assert only_warning(always).name == "treads_unequal"
-    assert "cross-talk" not in only_warning(always).cause
+    found = only_warning(always)
+    assert found.name == "treads_unequal"
+    assert "cross-talk" not in found.cause
 
 
 def test_a_column_that_holds_the_sum_is_no_scale_of_one_side():

@@ -70,6 +70,7 @@ CLEAN = {
         np.full(1200, 0.5), 0.3 * np.sin(PERIOD_S * np.arange(1200) / 3), sigma_m=1.0
     ),
     "stationary": lambda: drive(np.zeros(600), np.zeros(600)),
+    "much turning": lambda: drive(*turning_much()),
     "two short moves": lambda: drive(
         np.where(np.abs(np.arange(2400) % 1200 - 600) < 30, 1.0, 0.0), np.zeros(2400)
     ),
@@ -96,7 +97,6 @@ UNNAMED = {
 @pytest.mark.parametrize("name", UNNAMED)
 def test_what_has_no_name_is_a_disagreement(name):
     run = drive(*turning_much())
-    assert not check_recording(run).misleads
     (warning,) = check_recording(UNNAMED[name](run)).at(Level.WARNING)
     assert warning.name == "sensors_disagree"
     assert "cannot be determined" in warning.cause

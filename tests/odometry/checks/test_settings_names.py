@@ -5,15 +5,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from odometry.checks.evidence import Evidence
 from odometry.checks.recording import check_recording
-from odometry.checks.settings_names import robot_sizes
+from odometry.checks.settings_names import robot_sizes, settings_names
 from odometry.run import Robot
 from tests.odometry.checks.faulty import width
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
-
-
-def named(run, name):
-    return [one for one in check_recording(run).findings if one.name == name]
 
 
 @pytest.mark.parametrize(
@@ -28,7 +25,8 @@ def named(run, name):
     ],
 )
 def test_a_key_that_is_not_read_is_noted_with_the_one_that_is_meant(settings, words):
-    (found,) = named(replace(winding(), settings=settings), "setting_name")
+    (found,) = settings_names(Evidence(replace(winding(), settings=settings)))
+    assert found.name == "setting_name"
     assert all(word in found.seen for word in words)
     assert "run.toml" in found.seen
 
@@ -41,7 +39,7 @@ def test_a_key_that_is_not_read_is_noted_with_the_one_that_is_meant(settings, wo
     ],
 )
 def test_other_keys_are_kept_and_not_noted(settings):
-    assert named(replace(winding(), settings=settings), "setting_name") == []
+    assert list(settings_names(Evidence(replace(winding(), settings=settings)))) == []
 
 
 @pytest.mark.parametrize("factor", [0.002, 100.0])
@@ -60,10 +58,12 @@ def test_turns_say_more_of_a_track_width(factor):
     assert "robot_size" not in [one.name for one in found]
 
 
-def test_a_mass_in_grams_is_named():
+def test_the_check_names_a_mass_in_grams_and_a_misspelt_key():
     robot = Robot(track_width=0.6, mass=5e5)
-    (found,) = named(replace(winding(), robot=robot), "robot_size")
-    assert "kg" in found.seen
+    run = replace(winding(), robot=robot, settings={"run": {"terain": "grass"}})
+    size, key = check_recording(run).findings
+    assert (size.name, key.name) == ("robot_size", "setting_name")
+    assert "kg" in size.seen
 
 
 @pytest.mark.parametrize(

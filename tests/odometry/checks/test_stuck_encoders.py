@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.checks.evidence import Evidence
 from odometry.checks.recording import check_recording
+from odometry.checks.stuck_encoders import stuck_encoders
 from odometry.checks.undo import TREADS
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
@@ -28,7 +30,7 @@ def held(run, name, begin_s, end_s, value=None):
 
 
 def stuck(run):
-    return [finding for finding in check_recording(run).findings if finding.name == "stuck_encoder"]
+    return list(stuck_encoders(Evidence(run)))
 
 
 def straight_between_stands():
@@ -45,14 +47,14 @@ def straight_between_stands():
 )
 def test_a_tread_that_reads_zero_on_a_straight_drive_is_lost(name, begin_s, end_s, sensors):
     run = held(straight_between_stands(), name, begin_s, end_s, 0.0)
-    (found,) = stuck(SENSORS[sensors](run))
+    found = check_recording(SENSORS[sensors](run)).findings[0]
+    assert found.name == "stuck_encoder"
     assert found.seen.startswith(f"{name} stays at 0 m/s from ")
     begins_s, ends_s = np.ravel(found.spans_s)
     at_s = run.odometry.stamps_s
     moving = at_s[(at_s >= begin_s) & (at_s < end_s) & (run.odometry[f"v_{other(name)}"] > 0.5)]
     assert begins_s == pytest.approx(moving[0], abs=1.0)
     assert ends_s == pytest.approx(moving[-1], abs=1.0)
-    assert check_recording(SENSORS[sensors](run)).findings[0] == found
 
 
 def other(name):
@@ -122,8 +124,7 @@ def test_speeds_that_come_early_are_no_stuck_encoder(shared_data):
     assert stuck(put(run, "odometry", **early)) == []
 
 
-@pytest.mark.parametrize("side", ["v_left", "v_right"])
-@pytest.mark.parametrize("poses", [True, False])
+@pytest.mark.parametrize(("side", "poses"), [("v_left", True), ("v_right", False)])
 def test_eighty_seconds_of_a_real_drive(shared_data, side, poses):
     run = Run.read(shared_data / "motion" / "warthog_grass_20240808_1556")
     run = held(run if poses else replace(run, pose=None), side, 60, 140, 0.0)
@@ -161,8 +162,9 @@ def test_a_dead_band_is_named_beside_the_encoder():
     run = slow_and_fast()
     for name in TREADS:
         run = limited(run, name, lambda v: np.where(np.abs(v) < 0.4, 0.0, v))
-    assert all("dead band" in found.cause for found in stuck(run))
-    assert stuck(run)
+    found = stuck(run)
+    assert found
+    assert all("dead band" in one.cause for one in found)
 
 
 def test_a_gyroscope_that_the_poses_contradict_loses_no_encoder():
