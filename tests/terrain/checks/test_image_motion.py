@@ -156,7 +156,7 @@ def test_images_in_no_order_are_named_by_their_content(drive, camera):
 @pytest.mark.usefixtures("by_content")
 def test_terrain_that_is_recognised_nowhere_is_not_judged(drive, camera, monkeypatch):
     files = np.random.default_rng(3).permutation(drive.images["file"])
-    monkeypatch.setattr(unrelated_images, "FEWEST_OTHERS", 10_000)
+    monkeypatch.setattr(unrelated_images, "FAR_M", 30.0)  # few pairs lie so far apart
     findings, skipped = image_motion(with_images(drive, file=files), camera)
     assert findings == []
     assert "of 32 pairs of images" in skipped
