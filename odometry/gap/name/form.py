@@ -10,7 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.effects.corrected import Added
+from odometry.effects.lateral_skid import LateralSkid
 from odometry.effects.residual import Residual
+from odometry.effects.sensor_mount import LeverArm
 from odometry.effects.time_course import FromAMoment
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of, penalty
@@ -171,16 +173,21 @@ def smooth_in_place(
     if names.effects[place].effect.slow and closes_less(search, fits[best], names):
         return None
     is_main_part = is_most_of(closed, cost_of(before) - cost, config)
-    if is_main_part and _is_part_of(fitter, names, place, fits[best]):
+    if is_main_part and is_part_of(fitter, names, place, fits[best]):
         return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
     still = (cost - cost_of(both)) / closed
     return best if still < config.least_beside else None
 
 
-def _is_part_of(fitter: Fitter, names: Fitted, place: int, instead: Fitted) -> bool:
-    """Whether a name is constant shares of a motion, as the last function of a fit may be."""
-    if not all(p.absent == WHOLE for p in names.effects[place].effect.parameters):
+def is_part_of(fitter: Fitter, names: Fitted, place: int, instead: Fitted) -> bool:
+    """Whether a name is constant shares of a motion, as the last function of a fit may be.
+
+    Of a tread, or of the turn: another place of the sensor or of the centre of rotation.
+    """
+    effect = names.effects[place].effect
+    of_turn = isinstance(effect, LateralSkid | LeverArm)
+    if not of_turn and not all(p.absent == WHOLE for p in effect.parameters):
         return False
     others = (*names.effects[:place], *names.effects[place + 1 :])
     done = fitter.measured.rows(names.base, names.effects)

@@ -17,7 +17,8 @@ from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.form import closes_less, lacks_essence
+from odometry.gap.name.form import closes_less, is_part_of, lacks_essence
+from odometry.gap.name.form_gates import is_most_of
 from odometry.gap.name.further import Further
 from odometry.gap.name.general import general_candidates, shares_of_motion
 from odometry.gap.name.search import Search
@@ -119,13 +120,25 @@ def _largest_first(search: Search, found: Explanation) -> Explanation:
 
 
 def _better(search: Search, names: Explanation, others: Sequence[Explanation]) -> Explanation:
-    """The explanation of least cost; names where they lose by less than the margin."""
+    """The explanation of least cost; names where they lose by less than the margin.
+
+    Or where a name that is constant shares of a motion is the main part of a smooth function.
+    """
     best = min(others, key=lambda one: one.cost)
     closed = cost_of(search.start) - names.cost
     margin = margin_of(search.config, search.spread_of(best), closed)
+    if _is_its_main_part(search, names, best, closed):
+        return names
     if names.steps and surely_dearer(names.fitted, best.fitted, search.fitter.measured) < margin:
         return names
     return best
+
+
+def _is_its_main_part(search: Search, names: Explanation, best: Explanation, closed: float) -> bool:
+    if len(names.steps) != 1 or len(best.steps) != 1:
+        return False
+    is_most = is_most_of(closed, cost_of(search.start) - best.cost, search.config)
+    return is_most and is_part_of(search.fitter, names.fitted, 0, best.fitted)
 
 
 def _names_first(search: Search, found: Explanation) -> Explanation:

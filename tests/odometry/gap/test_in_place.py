@@ -1,5 +1,6 @@
 """What may stand in the place of a name: a slow course, a part of itself, shares of motion."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,11 +14,13 @@ from odometry.effects.time_course import FromAMoment, InBursts
 from odometry.effects.tread_slip import SlipBySpeed, TractionLoss
 from odometry.effects.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.own_moments import observed_s
-from odometry.gap.name import form
+from odometry.gap.name import form, names
+from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import (
-    _is_part_of,
+    is_part_of,
     lacks_essence,
     slow_course_in_place,
     without_essence,
@@ -114,7 +117,34 @@ def test_constant_shares_are_part_of_a_function_that_may_be_constant(
     knots = (0.0, 0.5, 1.0)
     terms = tuple((side, number) for side in ("left", "right") for number in range(3))
     function = fitter.fit([Residual("tread_speed", terms, "speed", knots)])
-    assert _is_part_of(fitter, fitter.fit([effect]), 0, function) == is_part
+    assert is_part_of(fitter, fitter.fit([effect]), 0, function) == is_part
+
+
+def turned_ahead(_, twist):
+    """About a point 0.3 m behind, and a little faster to the left."""
+    turns = twist[:, 2]
+    return twist + np.stack([0 * turns, 0.3 * turns, 0.03 * np.abs(turns)], axis=-1)
+
+
+@pytest.mark.parametrize(
+    ("other", "stays"),
+    [(turned_ahead, True), (lambda _, t: t + 0.3 * np.abs(t[:, 2:]) * [0, 1, 0], False)],
+    ids=["in proportion to the turn", "to one side whatever the turn"],
+)
+def test_a_place_stays_where_it_is_the_main_part_of_what_follows_the_turn(
+    make_scene, known, other, stays
+):
+    fitter = Fitter(known, measured_of([make_scene(9, other)], known, CONFIG))
+    terms = tuple((part, number) for part in ("v_y", "omega") for number in range(5))
+    function = Residual("speed_difference", terms, "", (-0.8, -0.2, 0.0, 0.2, 0.8))
+    search = SimpleNamespace(fitter=fitter, start=fitter.fit([]), config=CONFIG)
+    search.spread_of = lambda found: max(1.0, fitter.spread(found.fitted))
+    nothing = Explanation(search.start, (), ())
+    place, smooth = (
+        replace(nothing, steps=tuple(judge(fitter, search.start, [one], CONFIG, lambda: None)))
+        for one in (LateralSkid(), function)
+    )
+    assert (names._better(search, place, [smooth]) is place) == stays
 
 
 def test_what_needs_nothing_is_not_asked(make_scene, known):
