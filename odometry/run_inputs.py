@@ -4,6 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.models.inputs import Inputs
+from odometry.repeated_speeds import between_new_values
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.table import fill_gaps, level_where_missing
@@ -43,6 +44,7 @@ def inputs_with_poses(
         heading_rad,
         _wheel_angles(run),
         position_m=position_m,
+        unrepeated_m_s=between_new_values(stamps_s, speeds),
     )
 
 

@@ -9,10 +9,14 @@ from odometry.models.inputs import Inputs
 
 HARMONICS = 2
 ANGLES = ("heading", "wheel_angle", "left_wheel_angle", "right_wheel_angle")
-FURTHER = ("tread_speed_lost", "tread_speed_gained")  # no rivals of names
+REPEATED = "tread_speed_repeated"  # of which only a share may be added
+FURTHER = (  # no rivals of names
+    *("tread_speed_lost", "tread_speed_gained", REPEATED),
+    *("turn_since_rest", "turn_since_reversal"),
+)
 OF_TREADS = (  # variables (N, 2): of each tread its own
     *("tread_speed", "tread_acceleration", "other_tread_speed"),
-    *("tread_travel_since_reversal", *FURTHER),
+    *("tread_travel_since_reversal", "tread_speed_lost", "tread_speed_gained", REPEATED),
 )
 WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
     *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
@@ -23,6 +27,8 @@ ACCELERATION_OVER_S = 0.2
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
 REVERSING_M_S = 0.02  # slower is no reversal
 LONG_SINCE_M = 10.0  # before the first reversal
+TURNING_RAD_S = 0.02  # slower is no turn
+LONG_SINCE_RAD = 3.0  # before the first turn
 TURN_OVER_M = 1.0
 FORCE_OVER_S = 1.0
 MEAN_OVER_S = 8.0  # heat, charge and mud come and go over seconds
@@ -137,6 +143,21 @@ def _since_stop(inputs: Inputs) -> FloatArray | None:
     return np.asarray(time_s - np.maximum.accumulate(np.where(rests, time_s, time_s[0])))
 
 
+def _turn_since(twist: FloatArray, inputs: Inputs, *, rests: bool) -> FloatArray | None:
+    """Size (N,) of the turn [rad] since its side last changed, or since it rested as well."""
+    if inputs.time_s is None:
+        return None
+    _, steps_s = _samples(inputs)
+    turned_rad = np.abs(twist[:, 2]) * steps_s
+    sides = np.where(np.abs(twist[:, 2]) > TURNING_RAD_S, np.sign(twist[:, 2]), 0.0)
+    kept = np.arange(len(sides)) if rests else np.flatnonzero(sides)
+    begins = kept[1:][sides[kept[1:]] != sides[kept[:-1]]]
+    before_rad = np.cumsum(turned_rad) - turned_rad
+    last_rad = np.full(len(sides), -LONG_SINCE_RAD)
+    last_rad[begins] = before_rad[begins]
+    return np.asarray(before_rad + turned_rad / 2 - np.maximum.accumulate(last_rad))
+
+
 def _turn_before(twist: FloatArray, inputs: Inputs) -> FloatArray | None:
     """Turn (N,) [rad] over the last TURN_OVER_M of travel."""
     if inputs.time_s is None:
@@ -168,6 +189,7 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "tread_travel_since_reversal": _each_since_reversal,
     "tread_speed_lost": lambda inputs: _changed(inputs, to_more=False),
     "tread_speed_gained": lambda inputs: _changed(inputs, to_more=True),
+    REPEATED: lambda inputs: inputs.unrepeated_m_s,
     "time": lambda inputs: inputs.time_s,
     "time_since_stop": _since_stop,
     "mean_speed_before": lambda inputs: _mean_before(
@@ -185,6 +207,8 @@ SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
         None if inputs.time_s is None else _since_reversal(twist[:, 0], inputs)
     ),
     "turn_before": _turn_before,
+    "turn_since_rest": lambda twist, inputs: _turn_since(twist, inputs, rests=True),
+    "turn_since_reversal": lambda twist, inputs: _turn_since(twist, inputs, rests=False),
     "lateral_acceleration_before": lambda twist, inputs: _mean_before(
         twist[:, 0] * twist[:, 2], inputs, FORCE_OVER_S
     ),

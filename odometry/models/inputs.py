@@ -42,6 +42,9 @@ class Inputs:
         Which of several runs a sample is of, from 0; that of one run where absent.
     position_m : (..., 2) or None
         Measured x and y, in the frame of the reference, interpolated; None without measured poses.
+    unrepeated_m_s : (..., 2) or None
+        What lines between new values add to tread speeds that are repeated
+        (`odometry.repeated_speeds`); None where none is.
 
     Examples
     --------
@@ -63,6 +66,7 @@ class Inputs:
     yaw_rate_rad_s: FloatArray | None = None
     run_number: IntArray | None = None
     position_m: FloatArray | None = None
+    unrepeated_m_s: FloatArray | None = None
 
     def __post_init__(self) -> None:
         speeds = np.asarray(self.tread_speeds_m_s)

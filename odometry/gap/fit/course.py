@@ -19,6 +19,7 @@ from odometry.windows.dense import DenseWindows
 ADDED_TO = (  # components, and what they grow with
     *((TREADS, "speed"), (("left",), "speed"), (("right",), "speed"), (("v_x",), "v_x")),
     *((("omega",), "omega"), (("omega",), ""), (WORLD, ""), (("v_x", "v_y"), "")),
+    (("v_y",), "omega"),
 )
 SPACINGS_S = (2.0, 4.0, 8.0)  # of knots, of windows of 2 s by turns
 MOST_KNOTS = 100

@@ -14,7 +14,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import TREADS, Residual
-from odometry.effects.residual_variables import FURTHER, variable_of
+from odometry.effects.residual_variables import FURTHER, OF_TREADS, REPEATED, variable_of
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.accepted_effects import Standing
@@ -60,7 +60,9 @@ class Further(Standing):
         """Explanations that hold: where none does, without the variable that was the first."""
         candidates = (
             *self.small_functions,
-            *further_candidates(self.fitter.measured.scenes, self.config),
+            *further_candidates(
+                self.fitter.measured.scenes, self.fitter.calibration.base, self.config
+            ),
         )
         held = replace(found, steps=())
         for _ in range(self.config.tries_further):
@@ -111,13 +113,29 @@ class Further(Standing):
         return np.asarray(of_pieces, dtype=np.float64)
 
 
-def further_candidates(scenes: Sequence[DenseWindows], config: GapConfig) -> tuple[Residual, ...]:
-    """Functions of what treads lost or gained in speed, and of the place in more detail."""
+def further_candidates(
+    scenes: Sequence[DenseWindows], base: Base, config: GapConfig
+) -> tuple[Residual, ...]:
+    """Functions of what treads lost or gained in speed, repeat, or turned since; and fine maps."""
     found: list[Residual] = []
+    twists = [base.model.twist(base.values, scene.inputs) for scene in scenes]
     for name in FURTHER:
-        of_scenes = [variable_of(name, scene.inputs, None) for scene in scenes]
+        of_scenes = [variable_of(name, s.inputs, t) for s, t in zip(scenes, twists, strict=True)]
         known = [np.ravel(values) for values in of_scenes if values is not None]
         knots = knots_of(np.concatenate(known), name, config) if len(known) == len(scenes) else ()
-        for treads in (TREADS, *((tread,) for tread in TREADS)) if knots else ():
-            found += [Residual(name, every(treads, len(knots)), by, knots) for by in ("", "speed")]
+        found += _of_knots(name, knots) if knots else []
     return (*found, *finer_maps(scenes, config))
+
+
+def _of_knots(name: str, knots: tuple[float, ...]) -> list[Residual]:
+    """A share of the turn, or what is added to each tread, to both or to one."""
+    if name not in OF_TREADS:
+        return [Residual(name, every(("omega",), len(knots)), "omega", knots)]
+    found = []
+    for treads in (TREADS, *((tread,) for tread in TREADS)):
+        terms = every(treads, len(knots))
+        if name == REPEATED:  # nothing where no speed is repeated
+            found.append(Residual(name, tuple(t for t in terms if knots[t[1]]), "", knots))
+        else:
+            found += [Residual(name, terms, by, knots) for by in ("", "speed")]
+    return found

@@ -21,7 +21,7 @@ from odometry.effects.residual import (
     Residual,
     variables_of,
 )
-from odometry.effects.residual_variables import WHAT_WENT_BEFORE
+from odometry.effects.residual_variables import REPEATED, WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
 from odometry.gap.name.places import maps
 from odometry.windows.dense import DenseWindows
@@ -118,9 +118,12 @@ def every(components: Sequence[str], functions: int) -> tuple[tuple[str, int], .
 
 INNER = (0.02, 0.98)  # quantiles between which knots lie
 SINCE_REVERSAL_M = (0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8)  # gears, tracks and casters settle
+SINCE_TURN_RAD = (0.0, 0.05, 0.1, 0.2, 0.4, 0.8)  # tyres that twist before they scrub
 STATED = {
     "travel_since_reversal": SINCE_REVERSAL_M,
     "tread_travel_since_reversal": SINCE_REVERSAL_M,
+    "turn_since_rest": SINCE_TURN_RAD,
+    "turn_since_reversal": SINCE_TURN_RAD,
 }
 
 
@@ -148,11 +151,15 @@ def knots_of_variables(
 def knots_of(values: FloatArray, name: str, config: GapConfig) -> tuple[float, ...]:
     """Even in the share of samples between them; none where the variable hardly varies.
 
-    Those of a tread's motion are even about zero, where what drives do changes its sign.
+    Those of a tread's motion are even about zero, where what drives do changes its sign. What a
+    record says of repeated speeds is added by a share of it, one of each sign.
     """
     if name in STATED:
         return STATED[name]
-    if name in OF_TREADS:
+    if name == REPEATED:
+        largest = float(np.abs(values).max(initial=0.0))
+        places = np.array([-largest, 0.0, largest])
+    elif name in OF_TREADS:
         largest = max(float(np.quantile(np.abs(values), INNER[1])), config.least_range / 2)
         half = np.geomspace(largest / 16, largest, config.tread_knots)
         places = np.concatenate([-np.flip(half), [0.0], half])

@@ -9,12 +9,16 @@ AT_SPEEDS = "several constant speeds, straight on and in one turn"
 WITH_STOPS = "one speed, with and without stops and reversals"
 IN_CIRCLES = "circles of several radii to both sides at one speed"
 AFTER_REST = "the same course again after a rest"
+TO_BOTH_SIDES = "turns on the spot, some to one side in turn and some to both"
+RECORDED_ELSEWHERE = "the same course, with tread speeds recorded by the drives themselves"
 LEVEL = "the same course on level terrain"
 SLOWLY = "a straight line at one slow speed"
 DRIVES: Mapping[str, str] = {  # in which a variable changes and the others hardly do
     **dict.fromkeys(("speed", "tread_speed", "other_tread_speed"), AT_SPEEDS),
     **dict.fromkeys(("speed_history", "tread_acceleration", "time_since_stop"), WITH_STOPS),
     **dict.fromkeys(("tread_speed_lost", "tread_speed_gained"), WITH_STOPS),
+    **dict.fromkeys(("turn_since_rest", "turn_since_reversal"), TO_BOTH_SIDES),
+    "tread_speed_repeated": RECORDED_ELSEWHERE,
     **dict.fromkeys(("travel_since_reversal", "tread_travel_since_reversal"), WITH_STOPS),
     **dict.fromkeys(("curvature", "speed_difference", "turn_before"), IN_CIRCLES),
     **dict.fromkeys(("lateral_acceleration", "lateral_acceleration_before"), IN_CIRCLES),

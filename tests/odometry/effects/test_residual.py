@@ -96,6 +96,19 @@ def test_what_a_tread_lost_and_gained_in_speed_has_the_sign_of_its_motion():
     assert variable_of("tread_speed_lost", Inputs(speeds), None) is None
 
 
+def test_a_turn_is_counted_since_it_began_and_since_it_changed_its_side():
+    """It turns left, rests, turns left again and then right, 0.1 rad in each row."""
+    omega = np.array([0.0, 1.0, 1.0, 0.0, 1.0, -1.0, -1.0])
+    twist = np.stack([0 * omega, 0 * omega, omega], axis=-1)
+    inputs = Inputs(np.zeros((7, 2)), time_s=0.1 * np.arange(7))
+    of_rest, of_side = (
+        variable_of(f"turn_since_{name}", inputs, twist) for name in ("rest", "reversal")
+    )
+    np.testing.assert_allclose(of_rest[1:-1], [0.05, 0.15, 0.0, 0.05, 0.05], atol=1e-12)
+    np.testing.assert_allclose(of_side[-3:-1], [3.25, 0.05], atol=1e-12)
+    assert variable_of("turn_since_rest", Inputs(np.zeros((7, 2))), twist) is None
+
+
 def test_what_follows_from_the_twist():
     twist = np.array([[1.0, 0.0, 0.5], [0.01, 0.0, 0.5], [-2.0, 0.0, 0.5]])
     found = variables_of(Inputs(np.zeros((3, 2))), twist)

@@ -80,6 +80,22 @@ def test_pieces_of_a_fitted_run_have_their_course_found_on_windows_beside_them(p
     assert before - after > 0.8 * (before - NOISE_M)
 
 
+def test_a_load_that_moves_moves_the_centre_of_rotation_for_a_while(make_scene, known):
+    """To and fro by 0.15 m ahead, each 15 s."""
+
+    def planted(columns, twist):
+        ahead_m = np.where(columns["t"] % 30 < 15, 0.15, -0.15)
+        return twist - ahead_m[:, None] * twist[:, 2:] * [0, 1, 0]
+
+    scene = averaged_windows(make_scene(8, planted, duration_s=120.0)).numbered(0)
+    fitter = Fitter(known, measured_of([scene], known, CONFIG))
+    found = best_course(fitter, fitter.fit([]), [scene], CONFIG)
+    assert {(component, found.effect.by) for component, _ in found.effect.terms} == {
+        ("v_y", "omega")
+    }
+    assert found.least > CONFIG.least_evidence
+
+
 def test_where_nothing_is_there_the_course_does_not_pay(make_scene, known):
     still = averaged_windows(make_scene(7, lambda _, twist: twist, duration_s=120.0)).numbered(0)
     fitter = Fitter(known, measured_of([still], known, CONFIG))
