@@ -18,7 +18,7 @@ from odometry.effects.corrected import Added
 from odometry.effects.course_for_yaw import CourseForYaw
 from odometry.effects.curvature import Curvature
 from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
-from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.gyroscope_error import GyroscopeBySpeedError, GyroscopeError
 from odometry.effects.history import History
 from odometry.effects.in_course import in_course
 from odometry.effects.inertia_icr import InertiaByIndices
@@ -97,6 +97,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     LateByChance,
     StraightLines,
     GyroscopeError,
+    GyroscopeBySpeedError,
 )
 OUTLIERS = (ReferenceOutliers, FrozenPoses, JumpingPoses)
 KNOWN: tuple[type[Effect], ...] = (

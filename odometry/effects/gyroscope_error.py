@@ -38,3 +38,31 @@ class GyroscopeError(MeasurementEffect):
         """See `MeasurementEffect.gyroscope`."""
         time_s = 0.0 if inputs.time_s is None else inputs.time_s
         return np.asarray(values[0] * yaw_rate_rad_s + values[1] * time_s)
+
+
+class GyroscopeBySpeedError(GyroscopeError):
+    """The reported yaw rate is off by more the faster the treads run: vibration is rectified."""
+
+    form = "by_speed"
+    in_words = "a gyroscope whose bias grows with the speed"
+    equation = "w -> w + linear |f| + square f^2 + turning d^2, f and d half of v_r +/- v_l"
+    looks_like = "a gyroscope that reports a turn on straight lines, more of it at speed"
+    remedy = "damp the mount of the gyroscope, or estimate its bias while driving"
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (
+            EffectParameter("linear", "rad/m", -0.5, 0.5, 0.0, 0.005),
+            EffectParameter("square", "rad s/m^2", -0.5, 0.5, 0.0, 0.005),
+            EffectParameter("turning", "rad s/m^2", -0.5, 0.5, 0.0, 0.005),
+        )
+
+    def gyroscope(
+        self, values: FloatArray, yaw_rate_rad_s: FloatArray, inputs: Inputs
+    ) -> FloatArray:
+        """See `MeasurementEffect.gyroscope`."""
+        forward_m_s = np.abs(inputs.left + inputs.right) / 2
+        apart_m_s = (inputs.right - inputs.left) / 2
+        grown = [forward_m_s, forward_m_s**2, apart_m_s**2]
+        return np.asarray(yaw_rate_rad_s + np.tensordot(values, grown, axes=1))

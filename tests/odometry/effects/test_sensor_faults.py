@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.gyroscope_error import GyroscopeError
+from odometry.effects.gyroscope_error import GyroscopeBySpeedError, GyroscopeError
 from odometry.effects.reference_fault import Compass
 from odometry.models.inputs import Inputs
 from tests.odometry.effects.reports import reported
@@ -15,6 +15,13 @@ def test_a_gyroscope_is_scaled_and_drifts():
     found = GyroscopeError().gyroscope(np.array([1.1, 1e-3]), rates, inputs)
     np.testing.assert_allclose(found, [1.1, 0.01, -2.18], atol=1e-15)
     assert GyroscopeError().lacks(inputs, None) == "a gyroscope"
+
+
+def test_a_gyroscope_shakes_with_the_speed_and_with_the_turn():
+    inputs = Inputs(np.array([[0.0, 0.0], [-1.0, -1.0], [-0.5, 0.5], [0.5, 1.5]]))
+    found = GyroscopeBySpeedError().gyroscope(np.array([0.01, 0.1, 0.4]), np.ones(4), inputs)
+    np.testing.assert_allclose(found, [1.0, 1.11, 1.1, 1.21], atol=1e-15)
+    assert GyroscopeBySpeedError().lacks(inputs, None) == "a gyroscope"
 
 
 @pytest.mark.parametrize("bent", [(0.1, 0.0), (0.0, -0.3), (0.6, 0.6)])
