@@ -4,11 +4,12 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import BoolArray, FloatArray
 from odometry.models.inputs import Inputs
 
 HARMONICS = 2
 ANGLES = ("heading", "wheel_angle", "left_wheel_angle", "right_wheel_angle")
+SINCE_STOP = "time_since_stop"  # of a drive that stops
 REPEATED = "tread_speed_repeated"  # of which only a share may be added
 FURTHER = (  # no rivals of names
     *("tread_speed_lost", "tread_speed_gained", REPEATED),
@@ -20,7 +21,7 @@ OF_TREADS = (  # variables (N, 2): of each tread its own
 )
 WHAT_WENT_BEFORE = (  # of a moment, or is elsewhere
     *("other_tread_speed", "tread_travel_since_reversal", "travel_since_reversal"),
-    *("turn_before", "lateral_acceleration_before", "time_since_stop"),
+    *("turn_before", "lateral_acceleration_before", SINCE_STOP),
     *("mean_speed_before", "mean_turning_before"),
 )
 ACCELERATION_OVER_S = 0.2
@@ -39,9 +40,11 @@ CHANGED_OVER_S = 0.6  # a body slides on for about as long
 def variables_of(inputs: Inputs, twist: FloatArray | None = None) -> dict[str, FloatArray]:
     """What a residual may depend on, of what was recorded and of the twist (N, 3) simulated.
 
-    Each is (N,), but those of `OF_TREADS` (N, 2).
+    Each is (N,), but those of `OF_TREADS` (N, 2). In a drive without a stop the time since one is
+    run time.
     """
-    found = {name: variable_of(name, inputs, twist) for name in VARIABLES}
+    names = [name for name in VARIABLES if name != SINCE_STOP or _has_stop(inputs)]
+    found = {name: variable_of(name, inputs, twist) for name in names}
     return {name: values for name, values in found.items() if values is not None}
 
 
@@ -130,17 +133,29 @@ def _each_since_reversal(inputs: Inputs) -> FloatArray | None:
 
 
 def _since_stop(inputs: Inputs) -> FloatArray | None:
-    """Time (N,) [s] since both treads last stood, or the start; None of a drive without a stop."""
+    """Time (N,) [s] since both treads last stood, or the start."""
     if inputs.time_s is None:
         return None
     time_s, _ = _samples(inputs)
-    stands = (np.abs(inputs.tread_speeds_m_s) < REVERSING_M_S).all(axis=-1)
-    moved_s = np.maximum.accumulate(np.where(stands, time_s[0], time_s))
-    rests = stands & (time_s - moved_s >= STOP_S)
-    moving = np.flatnonzero(~stands)
-    if not len(moving) or not rests[moving[0] : moving[-1]].any():
-        return None
+    _, rests = _stands_and_rests(inputs)
     return np.asarray(time_s - np.maximum.accumulate(np.where(rests, time_s, time_s[0])))
+
+
+def _has_stop(inputs: Inputs) -> bool:
+    """Whether treads that moved stand for a while and move again."""
+    if inputs.time_s is None:
+        return False
+    stands, rests = _stands_and_rests(inputs)
+    moving = np.flatnonzero(~stands)
+    return len(moving) > 0 and bool(rests[moving[0] : moving[-1]].any())
+
+
+def _stands_and_rests(inputs: Inputs) -> tuple[BoolArray, BoolArray]:
+    """Whether both treads stand (N,), and whether they have stood for STOP_S."""
+    time_s, _ = _samples(inputs)
+    stands = np.asarray((np.abs(inputs.tread_speeds_m_s) < REVERSING_M_S).all(axis=-1))
+    moved_s = np.maximum.accumulate(np.where(stands, time_s[0], time_s))
+    return stands, stands & (time_s - moved_s >= STOP_S)
 
 
 def _turn_since(twist: FloatArray, inputs: Inputs, *, rests: bool) -> FloatArray | None:
@@ -189,9 +204,13 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "tread_travel_since_reversal": _each_since_reversal,
     "tread_speed_lost": lambda inputs: _changed(inputs, to_more=False),
     "tread_speed_gained": lambda inputs: _changed(inputs, to_more=True),
-    REPEATED: lambda inputs: inputs.unrepeated_m_s,
+    REPEATED: lambda inputs: (
+        np.zeros(inputs.tread_speeds_m_s.shape)
+        if inputs.unrepeated_m_s is None
+        else inputs.unrepeated_m_s
+    ),
     "time": lambda inputs: inputs.time_s,
-    "time_since_stop": _since_stop,
+    SINCE_STOP: _since_stop,
     "mean_speed_before": lambda inputs: _mean_before(
         np.abs(inputs.tread_speeds_m_s).mean(axis=-1), inputs, MEAN_OVER_S
     ),

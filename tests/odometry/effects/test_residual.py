@@ -229,3 +229,12 @@ def test_a_drive_without_a_stop_has_no_time_since_one(stands):
     speed = np.where(stands(time_s), 0.0, 0.5)
     found = variables_of(Inputs(np.column_stack([speed, speed]), time_s=time_s))
     assert "time_since_stop" not in found
+
+
+@pytest.mark.parametrize("name", ["time_since_stop", "tread_speed_repeated"])
+def test_what_one_drive_follows_is_evaluated_on_another_that_lacks_it(name):
+    """Without a stop it is the time since the start; where no speed is repeated it is nothing."""
+    time_s = np.arange(0.0, 10.0, 0.1)
+    found = variable_of(name, Inputs(np.full((100, 2), 0.5), time_s=time_s), None)
+    expected = time_s if name == "time_since_stop" else np.zeros((100, 2))
+    np.testing.assert_allclose(found, expected)
