@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage
-from odometry.run import UNKNOWN
 from terrain.classification.manifest import Manifest, read_manifest
 from terrain.classification.photo_faults import check_classes
 from terrain.classification.thumbnails import thumbnail_text
-from terrain.classification.trained_on import TrainedOn, image_sum
+from terrain.classification.trained_on import TrainedOn, check_names, image_sum
 from terrain.errors import PatchError
 from terrain.images import read_image
 
@@ -33,7 +32,8 @@ class LabelledPhoto:
 class LabelledPatches:
     """Patches of one size with their terrain names, groups and the photographs they are of.
 
-    `image_sums` and `thumbnails` are those of the photographs, by `image_sum` and `thumbnail_text`.
+    `image_sums` and `thumbnails` are those of the photographs, by `image_sum` and `thumbnail_text`;
+    `sides_px` the shorter side of each.
     """
 
     images: list[ByteImage] = field(default_factory=list)
@@ -43,6 +43,7 @@ class LabelledPatches:
     too_small: list[Path] = field(default_factory=list)
     image_sums: list[str] = field(default_factory=list)
     thumbnails: list[str] = field(default_factory=list)
+    sides_px: dict[Path, int] = field(default_factory=dict)
 
     @property
     def trained_on(self) -> TrainedOn:
@@ -65,9 +66,9 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     Raises
     ------
     PatchError
-        If `root` is not a folder, holds no photographs, or uses the reserved name ``unknown``,
-        if a class would vanish or be taken for two, or if the manifest is damaged or names none
-        of the photographs.
+        If `root` is not a folder, holds no photographs, or uses a name as that of what is
+        ``unknown``, if a class would vanish or be taken for two, or if the manifest is damaged or
+        names none of the photographs.
     """
     if not root.is_dir():
         raise PatchError(f"{root} is not a folder; expected {root}/<class>/*.jpg or *.png")
@@ -81,8 +82,10 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
         LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))
         for path in paths
     ]
-    if any(photo.label == UNKNOWN for photo in photos):
-        raise PatchError(f"{root / UNKNOWN}: the name '{UNKNOWN}' is reserved")
+    try:
+        check_names({photo.label for photo in photos})
+    except PatchError as error:
+        raise PatchError(f"{root}: {error}") from error
     return photos
 
 
@@ -149,6 +152,7 @@ def load_patches(
             patches.too_small.append(photo.path)
         patches.image_sums.append(image_sum(image))
         patches.thumbnails.append(thumbnail_text(image))
+        patches.sides_px[photo.path] = min(image.shape[:2])
         patches.images.extend(patch.copy() for patch in cut)  # so that no photograph is kept
         patches.labels.extend([photo.label] * len(cut))
         patches.groups.extend([photo.group] * len(cut))

@@ -1,7 +1,8 @@
 """What a classifier needs to be trained on, and what it was trained on."""
 
 import hashlib
-from collections.abc import Hashable, Mapping, Sequence
+import re
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self, TypeGuard
 
@@ -12,6 +13,8 @@ from odometry.run import UNKNOWN
 from terrain.classification.thumbnails import THUMBNAIL_PX, looks_like_one
 from terrain.errors import PatchError
 
+# What answers are called that name no terrain, and terrain that no source knows (`new_terrain`)
+RESERVED = re.compile(rf"{UNKNOWN}[\s_-]*\d*", re.IGNORECASE)
 SUM_DIGITS = 16  # of SHA-256: chance matches among a million images are of the order of 1e-8
 
 
@@ -94,8 +97,7 @@ def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
     """Raise PatchError unless there are two classes of two groups each, with allowed names."""
     if not n_images == len(labels) == len(groups):
         raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
-    if UNKNOWN in labels.tolist():
-        raise PatchError(f"the label '{UNKNOWN}' is reserved")
+    check_names(map(str, np.unique(labels).tolist()))
     photos: dict[Hashable, set[Hashable]] = {}
     for label, group in sorted(zip(labels.tolist(), groups.tolist(), strict=True)):
         photos.setdefault(label, set()).add(group)
@@ -105,6 +107,16 @@ def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
             "training needs at least 2 classes with patches of at least 2 photographs each, "
             f"so that some can be held out; photographs found: {seen or 'none'}"
         )
+
+
+def check_names(terrains: Iterable[str]) -> None:
+    """Raise PatchError if a terrain has a name of what is unknown, such as `unknown 1`."""
+    for name in sorted(terrains):
+        if RESERVED.fullmatch(name.strip()):
+            raise PatchError(
+                f"the name {name!r} is reserved for terrain that is not known; "
+                "give this class the name of its terrain"
+            )
 
 
 def check_codes(codes: AnyArray, classes: int) -> None:

@@ -159,7 +159,8 @@ def train(
         }
         training = adapted(patches, old, unused, **shared)
     classifier, loaded = training.classifier, training.patches
-    for note in notes(training, patches, colour=colour):
+    chooses_size = patch_size is None and old is None
+    for note in notes(training, patches, colour=colour, chooses_size=chooses_size):
         click.echo(note, err=True)
     if features is not None:
         click.echo(

@@ -6,10 +6,12 @@ from pathlib import Path
 from terrain.classification.manifest import read_manifest
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.photo_faults import look_alikes
-from terrain.classification.training import Training
+from terrain.classification.training import LARGEST_PATCH_PX, Training
 
 
-def notes(training: Training, folder: Path, *, colour: bool) -> Iterator[str]:
+def notes(
+    training: Training, folder: Path, *, colour: bool, chooses_size: bool = False
+) -> Iterator[str]:
     """What was left out, what is no test of the model, and what is in it.
 
     Parameters
@@ -19,11 +21,15 @@ def notes(training: Training, folder: Path, *, colour: bool) -> Iterator[str]:
         Of the photographs.
     colour : bool
         Whether colour was asked for.
+    chooses_size : bool
+        Whether the size of patches follows from the photographs.
     """
     classifier, patches = training.classifier, training.patches
     size = classifier.patch_size_px
     for path in patches.too_small:
         yield f"left out, smaller than {size} x {size} pixels: {path}"
+    if chooses_size:
+        yield from _of_size(patches, size)
     yield from _of_groups(patches)
     if colour and not classifier.colour_:
         yield "Colour is left out: patches are grey, or most of a class are, or the preset is."
@@ -32,6 +38,18 @@ def notes(training: Training, folder: Path, *, colour: bool) -> Iterator[str]:
             f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "
             "places of the same recordings. The same terrain has another texture elsewhere: label "
             "recordings of several sites, and test the model on one that is held out (classify)"
+        )
+
+
+def _of_size(patches: LabelledPatches, size_px: int) -> Iterator[str]:
+    """Which photographs make patches small, where most are large enough for large ones."""
+    smaller = sorted((of, path) for path, of in patches.sides_px.items() if of < LARGEST_PATCH_PX)
+    if size_px < LARGEST_PATCH_PX and 2 * len(smaller) < len(patches.sides_px):
+        yield (
+            f"Note: patches have {size_px} px in place of {LARGEST_PATCH_PX}, which do not fit "
+            f"into {len(smaller)} of {len(patches.sides_px)} photographs, such as {smaller[0][1]} "
+            f"(its shorter side: {smaller[0][0]} px). Small patches show less of a terrain: "
+            f"--patch-size {LARGEST_PATCH_PX} leaves these photographs out"
         )
 
 

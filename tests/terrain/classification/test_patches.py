@@ -110,8 +110,13 @@ def test_folders_that_hold_no_classes_are_errors(tmp_path):
         find_photos(tmp_path / "absent")
     with pytest.raises(PatchError, match="no photographs"):
         find_photos(tmp_path)
-    photo(tmp_path / "unknown/a.jpg")
-    with pytest.raises(PatchError, match="reserved"):
+
+
+@pytest.mark.parametrize("name", ["unknown", "unknown 1", "Unknown_12"])
+def test_a_name_of_what_is_unknown_is_no_class(tmp_path, name):
+    photo(tmp_path / f"{name}/a.jpg")
+    photo(tmp_path / "unknown sand/a.jpg")
+    with pytest.raises(PatchError, match=f"'{name}' is reserved"):
         find_photos(tmp_path)
 
 

@@ -1,4 +1,4 @@
-"""What `train` says of photographs that look alike."""
+"""What `train` says of photographs that look alike, or are small."""
 
 from types import SimpleNamespace
 
@@ -9,12 +9,12 @@ from terrain.classification.patches import find_photos, load_patches
 from terrain.cli.train_notes import notes
 
 
-def said(folder):
+def said(folder, **options):
     training = SimpleNamespace(
         classifier=SimpleNamespace(patch_size_px=64, colour_=False),
         patches=load_patches(find_photos(folder), 64),
     )
-    return list(notes(training, folder, colour=False))
+    return list(notes(training, folder, colour=False, **options))
 
 
 def test_one_scene_with_two_labels_is_named_before_scenes_that_are_there_twice(tmp_path, rng):
@@ -32,3 +32,17 @@ def test_one_scene_with_two_labels_is_named_before_scenes_that_are_there_twice(t
     assert "2 of 4 photographs look like one with another label" in contrary
     assert f"{tmp_path / 'mud/a'}.png (mud) and {tmp_path / 'sand/c'}.jpg (sand)" in contrary
     assert "2 of 4 photographs look like another one" in copies
+
+
+def test_photographs_that_make_patches_small_are_named(tmp_path, rng):
+    for name, side in {"a": 160, "b": 200, "c": 140, "d": 70}.items():
+        image = rng.integers(0, 256, (side, 240)).astype(np.uint8)
+        (tmp_path / "sand").mkdir(exist_ok=True)
+        cv2.imwrite(f"{tmp_path / 'sand' / name}.png", image)
+    (note,) = said(tmp_path, chooses_size=True)
+    assert "patches have 64 px in place of 128, which do not fit into 1 of 4 photographs" in note
+    assert f"{tmp_path / 'sand/d.png'} (its shorter side: 70 px)" in note
+    assert not said(tmp_path)  # the size was given
+    for name in "ab":
+        (tmp_path / f"sand/{name}.png").unlink()
+    assert not said(tmp_path, chooses_size=True)  # half of them are small: so are the photographs
