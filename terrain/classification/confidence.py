@@ -17,6 +17,16 @@ LEAST = 0.01  # of the difference from chance, so that the likeliest terrain sta
 # of what is calibrated on: half as in training, a quarter altered, a quarter of things; chosen on
 # ground/, measured on pavements/
 WEIGHTS = (0.5, 0.25, 0.25)
+FEW_TERRAINS = 3  # of a model: how sure it is of others cannot be learned from those that it knows
+
+
+def weight_of_others(terrains: int) -> float:
+    """Of terrain that a model of few terrains does not know, beside `WEIGHTS`; 0 of many terrains.
+
+    After so many different ones the next is another one with a probability of 1 / (terrains + 1),
+    by Laplace's rule of succession.
+    """
+    return WEIGHTS[0] / terrains if terrains <= FEW_TERRAINS else 0.0
 
 
 def evidence(
@@ -47,7 +57,7 @@ class AnswerConfidence:
     light and images of something else get the same share. This probability falls with the distance
     among the features and with the displacement of the look. It is learned from images whose
     photograph was held out: as they are, altered as `augmentation` does it, and squares of things,
-    for which every answer is wrong.
+    and for few terrains of other terrain, for which every answer is wrong.
 
     Attributes
     ----------

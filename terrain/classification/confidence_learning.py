@@ -20,7 +20,9 @@ from terrain.classification.trained_on import image_sum
 from terrain.classification.validation import Fold, Samples
 
 CROP = 4  # times as wide as a patch, at the most, of a patch beside its mirror images
-NO_TERRAIN = -1
+NOT_KNOWN = -1
+# Of scikit-image: terrain that a model of other terrains does not know
+TERRAINS = ("brick", "grass", "gravel")
 Table = tuple[float, FloatArray, BoolArray]
 
 
@@ -28,7 +30,7 @@ Table = tuple[float, FloatArray, BoolArray]
 class Shown:
     """Patches to judge: features (n, F), differences of looks (n, 10), true codes and groups (n,).
 
-    The true code of things is -1.
+    The true code of things, and of terrain that is not known, is -1.
     """
 
     features: FloatArray
@@ -45,32 +47,33 @@ class Shown:
 
 
 def shown_patches(
-    look: TrainingLook,
-    samples: Samples,
-    strange: tuple[Sequence[ByteImage], FloatArray],
-    things: tuple[Sequence[ByteImage], FloatArray],
-) -> tuple[Shown, Shown, Shown]:
-    """Training patches, every second of them altered, and things, with their features.
+    look: TrainingLook, samples: Samples, strange: tuple[Sequence[ByteImage], FloatArray]
+) -> tuple[Shown, Shown]:
+    """Training patches, and every second of them altered, with their features.
 
-    The looks of the first two are compared with those of other photographs.
+    Their looks are compared with those of other photographs.
     """
     rows = spread_rows(samples.groups)
     codes, groups = samples.codes[rows], samples.groups[rows]
-    of_strange, of_things = (
-        np.array([look_of(image) for image in images]) for images, _ in (strange, things)
-    )
-    numbers = np.arange(len(of_things))
+    of_strange = np.array([look_of(image) for image in strange[0]])
     own = groups[:, None] == groups
     return (
         Shown(samples.features[rows], look.differences(look.looks, own), codes, groups),
         Shown(strange[1], look.differences(of_strange, own[::2]), codes[::2], groups[::2]),
-        Shown(
-            things[1],
-            look.differences(of_things),
-            np.full(len(numbers), NO_TERRAIN),
-            numbers // SQUARES,
-        ),
     )
+
+
+def shown_squares(look: TrainingLook, squares: Sequence[ByteImage], features: FloatArray) -> Shown:
+    """Squares by `squares_of`, none of a known terrain, with their features."""
+    looks, numbers = np.array([look_of(square) for square in squares]), np.arange(len(squares))
+    differences = look.differences(looks)
+    return Shown(features, differences, np.full(len(numbers), NOT_KNOWN), numbers // SQUARES)
+
+
+def other_terrains(known: Sequence[str]) -> tuple[str, ...]:
+    """Photographs of `TERRAINS` that a model does not know by the names of its terrains."""
+    names = [str(name).casefold() for name in known]
+    return tuple(of for of in TERRAINS if not any(of in name for name in names))
 
 
 @dataclass(frozen=True)
@@ -103,21 +106,22 @@ def learned_confidence(
     answers: Answers,
     folds: Sequence[Fold],
     samples: Samples,
-    shown: tuple[Shown, Shown, Shown],
+    shown: tuple[Shown, Shown],
+    not_known: Sequence[tuple[float, Shown]],
 ) -> AnswerConfidence | None:
-    """The confidence by patches as they are and altered, each held out, and by things.
+    """The confidence by patches as they are and altered, each held out, and by what is not known.
 
-    Each counts alone and with the others of its photograph.
+    Each counts alone and with the others of its photograph; `not_known` has weights.
     """
-    *of_terrain, things = shown
     tables: list[Table] = []
     for _, test, model in folds:
         groups = np.unique(samples.groups[test])
-        for share, kind in zip(WEIGHTS, of_terrain, strict=False):
+        for share, kind in zip(WEIGHTS, shown, strict=False):
             held = kind.of_groups(groups)
             part = len(held.codes) / len(kind.codes)
             tables += [(share * part, *answers.table(model, held, n)) for n in _sizes(held)]
-    tables += [(WEIGHTS[-1], *answers.table(answers.model, things, n)) for n in _sizes(things)]
+    for share, kind in not_known:
+        tables += [(share, *answers.table(answers.model, kind, n)) for n in _sizes(kind)]
     return AnswerConfidence.of(tables)
 
 

@@ -7,11 +7,15 @@ import numpy as np
 from sklearn.base import clone
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
+from terrain.classification.confidence import WEIGHTS, weight_of_others
 from terrain.classification.confidence_learning import (
     Answers,
+    Shown,
     altered_patch,
     learned_confidence,
+    other_terrains,
     shown_patches,
+    shown_squares,
 )
 from terrain.classification.feature_jobs import Transformed, features_of
 from terrain.classification.features import FeatureSettings
@@ -20,7 +24,7 @@ from terrain.classification.look import spread_rows
 from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples
-from terrain.classification.other_things import OtherThings, squares_of_things
+from terrain.classification.other_things import PHOTOGRAPHS, OtherThings, squares_of
 from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
@@ -105,15 +109,14 @@ class LearningClassifier(TrainedClassifier):
         self.other_things_ = self.confidence_ = None
         if self._features is None or not isinstance(self._neighbours, DiscriminantNeighbours):
             return
-        squares = squares_of_things(self.patch_size_px)
-        things = _features_of_things(self.patch_size_px, self._features)
+        things = _features_of(PHOTOGRAPHS, self.patch_size_px, self._features)
         scaled = self._neighbours.scaler.transform
         self.other_things_ = OtherThings.of(
             scaled(samples.features), samples.codes, samples.groups, scaled(things)
         )
         if self.training_look_ is None or self.image_rejection_distances_ is None:
             return
-        shown = shown_patches(self.training_look_, samples, strange, (squares, things))
+        shown = shown_patches(self.training_look_, samples, strange)
         answers = Answers(
             self._neighbours,
             self.n_neighbors_,
@@ -121,7 +124,28 @@ class LearningClassifier(TrainedClassifier):
             self.image_rejection_distances_,
             self.training_look_,
         )
-        self.confidence_ = learned_confidence(answers, folds, samples, shown)
+        self.confidence_ = learned_confidence(
+            answers, folds, samples, shown, self._not_known(self.training_look_)
+        )
+
+    def _not_known(self, look: TrainingLook) -> list[tuple[float, Shown]]:
+        """Squares of things, and of other terrain where few are known, with their weights."""
+        kinds: dict[tuple[str, ...], float] = {PHOTOGRAPHS: WEIGHTS[-1]}
+        if others := other_terrains(self.classes_.tolist()):
+            kinds[others] = weight_of_others(len(self.classes_))
+        size_px, made_by = self.patch_size_px, self._features
+        return [
+            (
+                weight,
+                shown_squares(
+                    look,
+                    squares_of(photographs, size_px),
+                    _features_of(photographs, size_px, made_by),
+                ),
+            )
+            for photographs, weight in kinds.items()
+            if weight and made_by is not None
+        ]
 
     def _strange_patches(self, patches: Sequence[ByteImage], photos: AnyArray) -> list[ByteImage]:
         """Every second of the patches whose looks are kept, altered."""
@@ -145,15 +169,19 @@ class LearningClassifier(TrainedClassifier):
             self.old_samples_ = OldSamples(samples.features[rows], labels[rows])
 
 
-def _features_of_things(size_px: int, made_by: FeatureSettings | Transformed) -> FloatArray:
-    """Features (n, F) of `squares_of_things`; those of settings are made once in a process."""
+def _features_of(
+    photographs: tuple[str, ...], size_px: int, made_by: FeatureSettings | Transformed
+) -> FloatArray:
+    """Features (n, F) of `squares_of`; those of settings are made once in a process."""
     if isinstance(made_by, FeatureSettings):
-        return _kept_features(size_px, made_by)
-    return features_of(squares_of_things(size_px), made_by)
+        return _kept_features(photographs, size_px, made_by)
+    return features_of(squares_of(photographs, size_px), made_by)
 
 
 @cache
-def _kept_features(size_px: int, settings: FeatureSettings) -> FloatArray:
-    features = features_of(squares_of_things(size_px), settings)
+def _kept_features(
+    photographs: tuple[str, ...], size_px: int, settings: FeatureSettings
+) -> FloatArray:
+    features = features_of(squares_of(photographs, size_px), settings)
     features.flags.writeable = False
     return features

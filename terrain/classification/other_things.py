@@ -1,4 +1,4 @@
-"""Images of things that are no terrain, such as a cat, a cup or a page of print."""
+"""Images of things that are no terrain, such as a cat, a cup or a page of print; and squares."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,16 +23,21 @@ KNOWN_SHARE, SHARE_OF_A_TERRAIN = 0.01, 0.05  # of images that may be taken for 
 NO_LIMIT = np.finfo(float).max
 
 
-@cache
 def squares_of_things(size_px: int) -> list[ByteImage]:
-    """RGB squares (S, S, 3) of photographs of scikit-image that show no terrain.
+    """RGB squares (S, S, 3) of photographs of scikit-image that show no terrain."""
+    return squares_of(PHOTOGRAPHS, size_px)
+
+
+@cache
+def squares_of(photographs: tuple[str, ...], size_px: int) -> list[ByteImage]:
+    """RGB squares (S, S, 3) of photographs of scikit-image, one photograph after the other.
 
     They are as large as the photograph shows them, twice or half as large, and turned; the same
     for each call.
     """
     rng = np.random.default_rng(0)
     squares = []
-    for name in PHOTOGRAPHS:
+    for name in photographs:
         levels = _levels(getattr(skimage.data, name)(), size_px)
         for _ in range(SQUARES):
             level = levels[rng.integers(len(levels))]

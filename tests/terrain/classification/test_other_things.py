@@ -14,6 +14,7 @@ from terrain.classification.other_things import (
     SQUARES,
     THINGS,
     OtherThings,
+    squares_of,
     squares_of_things,
 )
 from terrain.classification.own_statistics import OwnStatisticsClassifier
@@ -47,7 +48,7 @@ def test_squares_are_of_every_photograph_and_always_the_same(size_px):
     squares = squares_of_things(size_px)
     assert {square.shape for square in squares} == {(size_px, size_px, 3)}
     assert len(squares) == SQUARES * len(PHOTOGRAPHS)
-    again = squares_of_things.__wrapped__(size_px)
+    again = squares_of.__wrapped__(PHOTOGRAPHS, size_px)
     assert all(np.array_equal(a, b) for a, b in zip(squares, again, strict=True))
 
 
