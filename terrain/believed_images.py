@@ -15,7 +15,7 @@ ELSEWHERE = frozenset(
     {"images_unrelated", "images_unordered", "images_reversed", "images_upside_down"}
 )
 # ... and by which some of them do, or show nothing
-OF_STRETCHES = frozenset({"images_frozen", "images_blank"})
+OF_STRETCHES = frozenset({"images_frozen", "images_blank", "images_lost_details"})
 
 
 def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]:

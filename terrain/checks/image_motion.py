@@ -13,6 +13,7 @@ from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 from terrain.checks.image_stretches import image_stretches
 from terrain.checks.lens_from_motion import wrong_lens
+from terrain.checks.lost_details import lost_details
 from terrain.checks.moved_camera import moved_camera
 from terrain.checks.terrain_views import TerrainViews
 from terrain.checks.unrelated_images import (
@@ -36,7 +37,8 @@ MIRRORED = -0.5  # of a turn by images over that of the robot
 def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     """Images that are late, early, reversed or mirrored, and a camera that points elsewhere.
 
-    Stretches on which the view stays or has no texture are findings, and are not compared.
+    Stretches on which the view stays or has no texture are findings, and are not compared; those
+    on which details are lost are findings, too.
 
     Returns
     -------
@@ -48,6 +50,7 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     stretches = image_stretches(run, camera, views)
     poor = list(stretches.findings())
     run = stretches.others()
+    poor += lost_details(run, camera, views)
     steps = ground_steps(run, camera, views)
     motion = ImageMotion(run, steps) if len(steps) >= FEWEST_PAIRS else None
     why = _doubt(motion, steps)

@@ -77,7 +77,7 @@ class TerrainViews:
 
     def _seen(self, name: str) -> "_Seen | None":
         if name not in self._kept:
-            image = self._grey(name)
+            image = self.grey(name)
             self._kept[name] = None if image is None else self._looked_at(image)
         return self._kept[name]
 
@@ -120,7 +120,7 @@ class TerrainViews:
         pixels = (pixels + 0.5) * self.size[0] / image.shape[1] - 0.5
         return _Seen((pixels, described), details, blank)
 
-    def _grey(self, name: str) -> AnyArray | None:
+    def grey(self, name: str) -> AnyArray | None:
         """An image of the camera's size, reduced, in grey."""
         try:
             file = self.run.folder / name

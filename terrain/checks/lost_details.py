@@ -1,0 +1,163 @@
+"""Stretches on which images show less of the same terrain than before: fog, mist, a lost focus."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, FloatArray
+from odometry.checks.finding import Finding, Level
+from odometry.geometry import se2
+from odometry.run import Run
+from terrain.camera import Camera
+from terrain.checks.ground_steps import APART_S, pairs_to_compare
+from terrain.checks.image_agreement import robot_motion
+from terrain.checks.terrain_views import TerrainViews
+
+SIZES_PX = (0.7, 1.4, 2.8)  # details of an octave each, in images 320 px wide
+TILE_PX, FEWEST_TILES = 32, 8
+LEAST_GREY, LEAST_DETAIL = 5.0, 0.5  # so that darkness and noise do not count
+# Logarithm of details over light, from an image to the next on the same terrain. Rocking, noisy
+# cameras had -0.31 to 0.19, another gamma (0.6) -0.4 to -0.64; fog -0.9 to -1.4
+HALF = float(np.log(2.0))
+WORTH_A_LOOK = HALF / 2  # of images that are looked at first, whatever terrain they show
+FEWEST_LOOKS = 3  # of these on a stretch: one blurred image is none
+
+
+def lost_details(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Finding]:
+    """Find where images begin to show half the details of the same terrain, and where they end.
+
+    Terrain of other details is no finding, nor is light: each tile of an image is compared with
+    the place in the next image to which the treads moved its terrain. What comes slowly, in parts
+    of the image alone (drops, dirt), or before the first image is not found.
+    """
+    if run.images is None:
+        return
+    details = _DetailsOfRun(run, camera, views, run.images["file"], run.images.stamps_s)
+    looks = np.unique(pairs_to_compare(run, camera)[:, 0]).tolist()
+    levels = np.array([details.level(row) for row in looks])
+    changes = [
+        change
+        for place in np.flatnonzero(np.abs(np.diff(levels)) > WORTH_A_LOOK).tolist()
+        if (change := details.change(looks[place], looks[place + 1])) is not None
+    ]
+    times_s = details.stamps_s - run.odometry.stamps_s[0]
+    for first, last, loss in _stretches(changes, len(times_s)):
+        if sum(first <= row <= last for row in looks) < FEWEST_LOOKS:
+            continue
+        span_s = (float(times_s[first]), float(times_s[last]))
+        yield Finding(
+            "images_lost_details",
+            Level.WARNING,
+            f"images from {span_s[0]:.1f} to {span_s[1]:.1f} s of run time show "
+            f"{np.exp(loss):.2f} of the details that the image before them shows of the same "
+            "terrain, light apart",
+            "Cannot be determined: fog, a wet or misted lens, another focus, or an exposure that "
+            "bleaches the terrain",
+            "Look at these images, and leave them out of images.csv: names of terrain by them "
+            "mean little",
+            (span_s,),
+        )
+
+
+def _stretches(changes: list[tuple[int, float]], count: int) -> Iterator[tuple[int, int, float]]:
+    """First and last row of images, and the loss [log]; by the rows after each change."""
+    lost: tuple[int, float] | None = None
+    for row, change in changes:
+        if lost is None and change < 0:
+            lost = row, change
+        elif lost is not None and change > 0:
+            yield lost[0], row - 1, lost[1]
+            lost = None
+    if lost is not None:
+        yield lost[0], count - 1, lost[1]
+
+
+@dataclass(frozen=True, eq=False)
+class _DetailsOfRun:
+    """Details in the images of a run: files (N,) at stamps (N,)."""
+
+    run: Run
+    camera: Camera
+    views: TerrainViews
+    files: AnyArray
+    stamps_s: FloatArray
+
+    def level(self, row: int) -> float:
+        """Mean logarithm of details over light of an image, whatever it shows."""
+        image = self.views.grey(str(self.files[row]))
+        return float("nan") if image is None else float(_details(image).mean())
+
+    def change(self, first: int, last: int) -> tuple[int, float] | None:
+        """The row after a change by half or more on the same terrain, and its logarithm."""
+        low, high = self.level(first), self.level(last)
+        while last - first > 1:
+            middle = (first + last) // 2
+            level = self.level(middle)
+            if abs(level - low) < abs(level - high):
+                first = middle
+            else:
+                last = middle
+        stamps_s = self.stamps_s[[first, last]]
+        before, after = (self.views.grey(str(self.files[row])) for row in (first, last))
+        if before is None or after is None or stamps_s[1] - stamps_s[0] > APART_S:
+            return None
+        travel_m, turn_rad = (of[0] for of in robot_motion(self.run, stamps_s[None, None]))
+        step = se2.exp(np.column_stack([travel_m, 0 * travel_m, turn_rad]))[0]
+        change = change_of_details(self.camera, before, after, step)
+        return None if change is None or abs(change) < HALF else (last, change)
+
+
+def change_of_details(
+    camera: Camera, before: AnyArray, after: AnyArray, step: FloatArray
+) -> float | None:
+    """Logarithm of details over light in one grey image (h, w) over those in another.
+
+    Parameters
+    ----------
+    camera : Camera
+    before, after : (h, w)
+    step : (3,)
+        x, y [m], yaw [rad] of the second robot frame in the first.
+
+    Returns
+    -------
+    float or None
+        Median over tiles of terrain that both show; None where these are too few.
+    """
+    if before.shape != after.shape:
+        return None
+    height, width = before.shape
+    u, v = np.meshgrid(np.arange(width), np.arange(height))
+    times = camera.image_size[0] / width
+    pixels = (np.column_stack([u.ravel(), v.ravel()]) + 0.5) * times - 0.5
+    places = se2.transform(se2.inverse(step), camera.pixels_to_ground(pixels))
+    there = (camera.ground_to_pixels(places) + 0.5) / times - 0.5
+    u, v = (np.nan_to_num(of, nan=-1.0).reshape(before.shape) for of in there.T)
+    inside = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
+    whole = _tiles(inside).min(axis=1) > 0
+    if np.count_nonzero(whole) < FEWEST_TILES:
+        return None
+    moved = cv2.remap(after, u.astype(np.float32), v.astype(np.float32), cv2.INTER_LINEAR)
+    return float(np.median((_details(moved) - _details(before))[whole]))
+
+
+def _details(image: AnyArray) -> FloatArray:
+    """Logarithm of details over light (K,) of each tile: mean of that of three octaves."""
+    values = image.astype(np.float32)
+    levels = [values, *(cv2.GaussianBlur(values, (0, 0), size) for size in SIZES_PX)]
+    octaves = [
+        0.5 * np.log(_tiles((fine - coarse) ** 2).mean(axis=1) + LEAST_DETAIL**2)
+        for fine, coarse in pairwise(levels)
+    ]
+    return np.asarray(np.mean(octaves, axis=0) - np.log(_tiles(values).mean(axis=1) + LEAST_GREY))
+
+
+def _tiles(image: AnyArray) -> AnyArray:
+    """Tiles (K, TILE_PX ** 2) of an image, row by row."""
+    rows, columns = (length // TILE_PX for length in image.shape)
+    whole = image[: rows * TILE_PX, : columns * TILE_PX]
+    parts = whole.reshape(rows, TILE_PX, columns, TILE_PX).swapaxes(1, 2)
+    return np.asarray(parts.reshape(rows * columns, -1))
