@@ -19,7 +19,7 @@ from terrain.errors import CameraError, ImageError
 from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image
 from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
-from terrain.still_view import StillWatch
+from terrain.still_image import StillWatch
 from terrain.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
 KEPT = 200  # statistics of the latest images

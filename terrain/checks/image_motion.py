@@ -37,7 +37,7 @@ MIRRORED = -0.5  # of a turn by images over that of the robot
 def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     """Images that are late, early, reversed or mirrored, and a camera that points elsewhere.
 
-    Stretches on which the view stays or has no texture are findings, and are not compared; those
+    Stretches on which the image stays or has no texture are findings, and are not compared; those
     on which details are lost are findings, too.
 
     Returns

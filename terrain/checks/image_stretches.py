@@ -1,4 +1,4 @@
-"""Stretches of a run on which the view stays while the treads move, or has no texture."""
+"""Stretches of a run on which the image stays while the treads move, or has no texture."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from terrain.camera import Camera
 from terrain.checks.ground_steps import pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
-from terrain.still_view import StillView
+from terrain.still_image import StillImage
 
 FEWEST = 3  # pairs of images, one after the other: one that looks so may be chance
 SHOWN = 3  # stretches that are listed
@@ -111,7 +111,7 @@ def image_stretches(run: Run, camera: Camera, views: TerrainViews) -> ImageStret
         return ImageStretches(run, pairs, kinds)
     travel_m, turn_rad = (of[0] for of in robot_motion(run, run.images.stamps_s[pairs][None]))
     steps = se2.exp(np.column_stack([travel_m, 0 * travel_m, turn_rad]))
-    files, still = run.images["file"], StillView(camera)
+    files, still = run.images["file"], StillImage(camera)
     for place, (rows, step) in enumerate(zip(pairs, steps, strict=True)):
         first, second = (str(files[row]) for row in rows)
         before, after = views.details(first), views.details(second)

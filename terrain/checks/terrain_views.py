@@ -12,7 +12,7 @@ from terrain.camera import Camera
 from terrain.checks.image_files import MOST_BYTES
 from terrain.errors import ImageError
 from terrain.image_size import stated_size
-from terrain.still_view import small_view
+from terrain.still_image import details_of
 
 WIDTH_PX = 320  # larger images are reduced to it: their details say no more of the motion
 REDUCED = {
@@ -28,7 +28,7 @@ FARTHEST = 6.0  # of the camera's height: how far terrain is looked at
 
 Pixels = tuple[FloatArray, FloatArray]  # (N, 2) and (N, 2), the same terrain in two images
 Features = tuple[FloatArray, AnyArray]  # pixels (N, 2), and what is there
-# Standard deviation of the details of `small_view` [grey levels]: lenses that are covered, and
+# Standard deviation of the details of `details_of` [grey levels]: lenses that are covered, and
 # nights, have 0.2 to 0.8, photographs of the smoothest asphalt 1.5, fog 2
 TEXTURE = 1.0
 # Of it over that of details below FINE_PX: terrain has 0.3 and more, noise alone 0.13
@@ -66,7 +66,7 @@ class TerrainViews:
         return None if seen is None else seen.features
 
     def details(self, name: str) -> FloatArray | None:
-        """`small_view` of an image file; None where it is of another size."""
+        """`details_of` of an image file; None where it is of another size."""
         seen = self._seen(name)
         return None if seen is None else seen.details
 
@@ -110,7 +110,7 @@ class TerrainViews:
     def _looked_at(self, image: AnyArray) -> "_Seen":
         orb = cv2.ORB.create(FEATURES, fastThreshold=CONTRAST)
         found, described = orb.detectAndCompute(image, None)
-        details = small_view(image)
+        details = details_of(image)
         texture = float(details.std())
         fine = image - cv2.GaussianBlur(image.astype(np.float32), (0, 0), FINE_PX)
         blank = texture < max(TEXTURE, NOT_NOISE * float(fine.std()))

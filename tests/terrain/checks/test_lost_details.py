@@ -15,8 +15,8 @@ from terrain.checks.lost_details import (
     lost_details,
 )
 from terrain.checks.terrain_views import TerrainViews
-from tests.terrain.test_still_view import down
-from tests.terrain.test_still_view import seen as shown
+from tests.terrain.test_still_image import down
+from tests.terrain.test_still_image import seen as shown
 
 SIZE, FROM_S, TO_S = (640, 480), 24.0, 40.0
 

@@ -16,14 +16,14 @@ FINEST_PX, COARSEST_PX = 1.0, 4.0
 FLOW_PX = 4.0  # of the terrain, at least: by then the details are elsewhere
 TILE_PX = 16
 FEWEST_TILES = 16  # with such flow, of 70: eleven were alike by chance once, on soft soil
-# Correlation in one place of nearly all tiles: frozen views have 0.8 (0.98 but for much noise),
+# Correlation in one place of nearly all tiles: frozen images have 0.8 (0.98 but for much noise),
 # moving terrain 0.6 at most (soft soil after 4 px), behind a dirty lens 0.2
 STAYS, NEARLY_ALL = 0.7, 0.9
-SURELY = 0.9  # of it, where the terrain has left the view, so that stripes cannot be excluded
+SURELY = 0.9  # of it, where the terrain has left the image, so that stripes cannot be excluded
 AS_WELL = 0.5  # of that correlation, in the place where terrain moved to
 
 
-def small_view(image: AnyArray) -> FloatArray:
+def details_of(image: AnyArray) -> FloatArray:
     """Details (h, WIDTH_PX) of an image (H, W) or (H, W, 3), reduced."""
     height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
     small = cv2.resize(to_grey(image), (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
@@ -33,8 +33,8 @@ def small_view(image: AnyArray) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class StillView:
-    """Compares views of one camera.
+class StillImage:
+    """Compares images of one camera.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class StillView:
     camera: Camera
 
     def stays(self, before: FloatArray, after: FloatArray, step: FloatArray) -> bool | None:
-        """Whether two views of `small_view` show the same in the same place.
+        """Whether two images by `details_of` show the same in the same place.
 
         Judged where the terrain is: what the image shows of the robot itself, and above the
         horizon, may stay.
@@ -58,7 +58,7 @@ class StillView:
         Returns
         -------
         bool or None
-            None where the terrain need not have moved by FLOW_PX. False as well where the views
+            None where the terrain need not have moved by FLOW_PX. False as well where the images
             agree in the place where terrain moved to: stripes along the way look alike in both.
         """
         middles = _grid(before.shape, TILE_PX)
@@ -79,7 +79,7 @@ class StillView:
         return _alike(before, moved, whole) < AS_WELL * _alike(before, after, whole)
 
     def _after(self, step: FloatArray, pixels: FloatArray) -> FloatArray:
-        """Where the terrain at pixels (N, 2) of a view is after a step; NaN where there is none."""
+        """Where terrain at pixels (N, 2) of a reduced image is after a step; NaN where nowhere."""
         times = self.camera.image_size[0] / WIDTH_PX
         places = self.camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
         there = self.camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
@@ -87,7 +87,7 @@ class StillView:
 
 
 class StillWatch:
-    """Follows the images of a camera, and says from when on the view stays.
+    """Follows the images of a camera, and says from when on they stay the same.
 
     Parameters
     ----------
@@ -95,35 +95,35 @@ class StillWatch:
     """
 
     def __init__(self, camera: Camera) -> None:
-        self._still = StillView(camera)
+        self._still = StillImage(camera)
         self._before: tuple[FloatArray, FloatArray] | None = None
         self._stays = False
 
     def stays(self, image: AnyArray, pose: FloatArray) -> bool:
-        """Whether the view has stayed since an image before, by the poses (3,) of the robot.
+        """Whether an image is as one before, though the robot moved, by its poses (3,).
 
         The answer holds until the robot has moved enough for another one.
         """
-        view = small_view(image)
+        details = details_of(image)
         if self._before is not None:
             earlier, was = self._before
-            answer = self._still.stays(earlier, view, se2.between(was, pose))
-            if answer is None and earlier.shape == view.shape:
+            answer = self._still.stays(earlier, details, se2.between(was, pose))
+            if answer is None and earlier.shape == details.shape:
                 return self._stays
             self._stays = bool(answer)
-        self._before = view, pose
+        self._before = details, pose
         return self._stays
 
 
 def _grid(shape: tuple[int, ...], step_px: int) -> FloatArray:
-    """Middles (N, 2) of squares in a view of a shape (h, w), row by row."""
+    """Middles (N, 2) of squares in an image of a shape (h, w), row by row."""
     u, v = np.meshgrid(np.arange(shape[1] // step_px), np.arange(shape[0] // step_px))
     return np.asarray((np.column_stack([u.ravel(), v.ravel()]) + 0.5) * step_px - 0.5)
 
 
 def _alike(one: AnyArray, other: AnyArray, chosen: BoolArray) -> float:
-    """Correlation of two views that nearly all of the chosen tiles (K,) have."""
-    first, second = (_centred(_tiles(view)[chosen]) for view in (one, other))
+    """Correlation of two images that nearly all of the chosen tiles (K,) have."""
+    first, second = (_centred(_tiles(image)[chosen]) for image in (one, other))
     sizes = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
     alike = (first * second).sum(axis=1) / np.maximum(sizes, 1e-9)
     return float(np.quantile(alike, 1 - NEARLY_ALL))
@@ -133,9 +133,9 @@ def _centred(tiles: AnyArray) -> AnyArray:
     return np.asarray(tiles - tiles.mean(axis=1, keepdims=True))
 
 
-def _tiles(view: AnyArray) -> AnyArray:
-    """Parts (K, TILE_PX ** 2) of a view, row by row."""
-    rows, columns = (length // TILE_PX for length in view.shape)
-    whole = view[: rows * TILE_PX, : columns * TILE_PX]
+def _tiles(image: AnyArray) -> AnyArray:
+    """Parts (K, TILE_PX ** 2) of an image, row by row."""
+    rows, columns = (length // TILE_PX for length in image.shape)
+    whole = image[: rows * TILE_PX, : columns * TILE_PX]
     tiles = whole.reshape(rows, TILE_PX, columns, TILE_PX).swapaxes(1, 2)
     return np.asarray(tiles.reshape(rows * columns, -1))

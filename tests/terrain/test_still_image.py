@@ -1,4 +1,4 @@
-"""A view that stays though the robot moves, and views of which that must not be said."""
+"""An image that stays though the robot moves, and images of which that must not be said."""
 
 import cv2
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 
 from odometry.geometry import se2
 from terrain.camera import Camera
-from terrain.still_view import StillView, StillWatch, small_view
+from terrain.still_image import StillImage, StillWatch, details_of
 
 SIZE = (320, 240)
 MATRIX = [[230, 0, 159.5], [0, 230, 119.5], [0, 0, 1]]
@@ -39,7 +39,7 @@ def seen(terrain, camera, pose=(0, 0, 0), noise=0.0, seed=0):
 
 
 def stays(camera, before, after, step=STEP):
-    return StillView(camera).stays(small_view(before), small_view(after), step)
+    return StillImage(camera).stays(details_of(before), details_of(after), step)
 
 
 def recompressed(image):
