@@ -11,7 +11,7 @@ from .demo import run_demo
 from .errors import TerrainError
 from .footprint_parts import Rectangle
 from .images import decode_image, read_image, to_grey
-from .labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
+from .labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
@@ -46,6 +46,8 @@ __all__ = [
     "check_run",
     "cut_patches",
     "decode_image",
+    "given_by_spans",
+    "given_terrain",
     "ground_view",
     "label_runs",
     "read_errors",
@@ -56,8 +58,6 @@ __all__ = [
     "switch_delays",
     "synthesise",
     "to_grey",
-    "told_by_spans",
-    "told_terrain",
     "train",
     "true_stretches",
     "write_labelled_patches",

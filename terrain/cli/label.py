@@ -120,7 +120,7 @@ def label(
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.labelling.corrections import read_corrections
-    from terrain.labelling.given_terrain import SURE, told_by_feel, told_by_spans, told_terrain
+    from terrain.labelling.given_terrain import SURE, given_by_feel, given_by_spans, given_terrain
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig
@@ -139,14 +139,14 @@ def label(
         read.append(run_to_label(whole, checks_made()[-1]))
     if by_feel is not None:
         model = read_feel_model(by_feel)
-        given = [told_by_feel(run, model, sure or SURE) for run in read]
+        given = [given_by_feel(run, model, sure or SURE) for run in read]
     elif spans:
         given = [
-            told_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
+            given_by_spans(run, by_run[run.folder], run.odometry.stamps_s[0] - span.from_s)
             for run in read
         ]
     else:
-        given = [told_terrain(run, source) for run in read]
+        given = [given_terrain(run, source) for run in read]
     ground = label_runs(
         read,
         given,

@@ -92,7 +92,7 @@ class GivenTerrain:
         return tuple(sorted({*self.names} - {""}))
 
 
-def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> GivenTerrain:
+def given_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> GivenTerrain:
     """Spans of run time; no terrain is given between them.
 
     Parameters
@@ -113,7 +113,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Giv
     >>> import terrain
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> span = terrain.TerrainSpan(5.0, 12.5, "grass")
-    >>> given = terrain.told_by_spans(run, [span], start_s=0.0)
+    >>> given = terrain.given_by_spans(run, [span], start_s=0.0)
     >>> given.between(6.0, 7.0), given.between(0.0, 1.0)
     (frozenset({'grass'}), frozenset({''}))
     """
@@ -134,7 +134,7 @@ def told_by_spans(run: Run, spans: Sequence[TerrainSpan], start_s: float) -> Giv
     return _given(SPANS, np.array([*stamps_s, start_s + end_s]), [*names, ""])
 
 
-def told_terrain(run: Run, source: str | None = None) -> GivenTerrain:
+def given_terrain(run: Run, source: str | None = None) -> GivenTerrain:
     """The terrain that a file of the run gives.
 
     Parameters
@@ -153,7 +153,7 @@ def told_terrain(run: Run, source: str | None = None) -> GivenTerrain:
     >>> import odometry
     >>> import terrain
     >>> run = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
-    >>> given = terrain.told_terrain(run)
+    >>> given = terrain.given_terrain(run)
     >>> given.source, given.names[0]
     ('truth.csv', 'gravel')
     """
@@ -200,7 +200,7 @@ SURE = 0.8  # probability from which a window labels: a wrong label misleads the
 STRETCH_S = 4.0  # so long is put together, around the moment that is labelled
 
 
-def told_by_feel(run: Run, model: FeelModel, sure: float = SURE) -> GivenTerrain:
+def given_by_feel(run: Run, model: FeelModel, sure: float = SURE) -> GivenTerrain:
     """The terrain by feel of a run, where that is sure; elsewhere there is no label.
 
     Evidence of STRETCH_S is put together, half of it from before each moment and half from after.

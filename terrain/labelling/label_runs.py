@@ -101,7 +101,7 @@ def label_runs(
     >>> import terrain
     >>> whole = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
-    >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
+    >>> labelled = terrain.label_runs([run], [terrain.given_terrain(run)])
     >>> sorted({square.label for square in labelled.chosen})
     ['gravel']
     """

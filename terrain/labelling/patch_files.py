@@ -99,7 +99,7 @@ def write_labelled_patches(
     >>> import terrain
     >>> whole = odometry.Run.read(odometry.shipped_data() / "runs" / "demo")
     >>> run = odometry.cut_run(whole, odometry.Span(0.0, 6.0))
-    >>> labelled = terrain.label_runs([run], [terrain.told_terrain(run)])
+    >>> labelled = terrain.label_runs([run], [terrain.given_terrain(run)])
     >>> with TemporaryDirectory() as folder:
     ...     refused = terrain.write_labelled_patches(Path(folder), labelled)
     ...     print(refused, len(list(Path(folder).rglob("*.png"))) > 1)

@@ -28,7 +28,7 @@ from odometry.run import Run
 from terrain.classification.patches import find_photos
 from terrain.classification.training import train
 from terrain.label_confusion import label_confusions
-from terrain.labelling.given_terrain import TerrainSpan, told_by_spans, told_terrain
+from terrain.labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.patch_files import write_labelled_patches
 from terrain.main_job import RunResult, run_odometry
@@ -112,10 +112,10 @@ def patches_of(out: Path, first: Path) -> dict[str, tuple[int, int, int]]:
     without = replace(run, pose=None, odometry=without_gyroscope(run.odometry))
     found = {}
     for name, (recorded, told) in {
-        "truth.csv": (run, told_terrain(run, "truth.csv")),
-        "images.csv": (run, told_terrain(run, "images.csv")),
+        "truth.csv": (run, given_terrain(run, "truth.csv")),
+        "images.csv": (run, given_terrain(run, "images.csv")),
         f"spans, rounded to {ROUNDED_S:g} s": (run, rounded_spans(run)),
-        "truth.csv, no poses, no gyroscope": (without, told_terrain(without, "truth.csv")),
+        "truth.csv, no poses, no gyroscope": (without, given_terrain(without, "truth.csv")),
     }.items():
         ground = label_runs([recorded], [told])
         found[name] = on_their_terrain(run, ground.chosen, ground.scale.side_m)
@@ -200,7 +200,7 @@ def rounded_spans(run: Run):
     for change, end_s in zip(changes, ends_s.tolist(), strict=True):
         spans.append(TerrainSpan(begin_s, end_s, str(names[change - 1])))
         begin_s = end_s
-    return told_by_spans(run, spans, run.truth.stamps_s[0])
+    return given_by_spans(run, spans, run.truth.stamps_s[0])
 
 
 def on_their_terrain(run: Run, chosen, side_m: float) -> tuple[int, int, int]:

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from terrain.labelling.given_terrain import told_terrain
+from terrain.labelling.given_terrain import given_terrain
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.square_labels import STRADDLES
 from tests.studies.labels import rounded_spans, without_gyroscope
@@ -63,9 +63,9 @@ def sources(run):
     """Runs and what states their terrain."""
     blind = replace(run, pose=None, odometry=without_gyroscope(run.odometry))
     return {
-        "truth.csv": (run, told_terrain(run, "truth.csv")),
+        "truth.csv": (run, given_terrain(run, "truth.csv")),
         "spans, rounded to 1 s": (run, rounded_spans(run)),
-        "truth.csv, no poses, no gyroscope": (blind, told_terrain(blind, "truth.csv")),
+        "truth.csv, no poses, no gyroscope": (blind, given_terrain(blind, "truth.csv")),
     }
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from odometry.run import Run
-from terrain.labelling.given_terrain import TerrainSpan, told_by_spans
+from terrain.labelling.given_terrain import TerrainSpan, given_by_spans
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.scale import LabelConfig
 
@@ -16,7 +16,7 @@ def told_spans(world):
     ends_s = [0.0, *(edge / world.speed_m_s for edge in world.edges_m), 60.0]
     names = ("gravel", "boards", "gravel")
     spans = [TerrainSpan(*ends_s[k : k + 2], name) for k, name in enumerate(names)]
-    return lambda run: told_by_spans(run, spans, 0.0)
+    return lambda run: given_by_spans(run, spans, 0.0)
 
 
 @pytest.fixture(scope="session")

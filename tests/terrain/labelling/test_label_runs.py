@@ -13,7 +13,7 @@ from odometry.table import Table
 from terrain.errors import PatchError
 from terrain.images import read_image
 from terrain.labelling.corrections import Corrections
-from terrain.labelling.given_terrain import told_terrain
+from terrain.labelling.given_terrain import given_terrain
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.patch_files import write_labelled_patches
 from terrain.labelling.scale import LabelConfig
@@ -115,7 +115,7 @@ def test_images_that_are_labelled_tell_what_they_all_show(run, world):
     lines = np.arange(len(images)) + 2
     table = Table("images.csv", {**images.columns, "terrain": names}, lines)
     run = replace(run, images=table)
-    found = label_runs([run], [told_terrain(run, "images.csv")], SMALL)
+    found = label_runs([run], [given_terrain(run, "images.csv")], SMALL)
     assert {each.label for each in found.chosen} == {"boards", "gravel"}
     for each in found.chosen:
         x = ground_of(world, each.of.square)[..., 0].mean()

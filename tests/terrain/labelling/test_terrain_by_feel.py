@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from terrain.labelling.given_terrain import told_by_feel
+from terrain.labelling.given_terrain import given_by_feel
 from tests.odometry.feel.feel_drives import drive, model_of_three
 from tests.terrain.test_feel_labels import joined
 
@@ -18,27 +18,27 @@ def model():
 
 def test_labels_are_of_the_moment(model):
     run, begin_s = joined(drive("gravel", 70), drive("snow", 71))
-    told = told_by_feel(run, model)
-    assert told.between(2.0, begin_s - 2.0) - {""} == {"gravel"}
-    assert told.between(begin_s + 2.0, begin_s + 25.0) - {""} == {"snow"}
-    named = [one for one in told.names if one]
-    assert len(named) > 0.6 * len(told.names)
-    assert not told.of_images
-    assert "mean probability" in told.source
+    given = given_by_feel(run, model)
+    assert given.between(2.0, begin_s - 2.0) - {""} == {"gravel"}
+    assert given.between(begin_s + 2.0, begin_s + 25.0) - {""} == {"snow"}
+    named = [one for one in given.names if one]
+    assert len(named) > 0.6 * len(given.names)
+    assert not given.of_images
+    assert "mean probability" in given.source
 
 
 def test_what_feels_like_no_terrain_labels_nothing(model):
     with pytest.raises(RunFolderError, match="no moment feels like"):
-        told_by_feel(drive("grates", 72), model)
+        given_by_feel(drive("grates", 72), model)
 
 
 def test_labels_know_how_sure_they_are(model):
     run, begin_s = joined(drive("gravel", 70), drive("snow", 71))
-    told = told_by_feel(run, model, sure=0.7)
-    sure = told.least_probability(4.0, 8.0)
-    assert 0.7 <= sure <= told.probabilities.max()
-    wide = told.least_probability(4.0, begin_s + 10.0)
+    given = given_by_feel(run, model, sure=0.7)
+    sure = given.least_probability(4.0, 8.0)
+    assert 0.7 <= sure <= given.probabilities.max()
+    wide = given.least_probability(4.0, begin_s + 10.0)
     assert wide <= sure
-    assert np.isnan(replace(told, probabilities=None).least_probability(4.0, 8.0))
-    more = told_by_feel(run, model, sure=float(np.median(told.probabilities)))
-    assert 0 < sum(map(bool, more.names)) < sum(map(bool, told.names))
+    assert np.isnan(replace(given, probabilities=None).least_probability(4.0, 8.0))
+    more = given_by_feel(run, model, sure=float(np.median(given.probabilities)))
+    assert 0 < sum(map(bool, more.names)) < sum(map(bool, given.names))
