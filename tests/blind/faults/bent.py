@@ -13,7 +13,7 @@ from tests.blind.faults.fault import Fault, UnsuitableError, about, pick_stretch
 from tests.blind.faults.poses import posed
 
 GOOD = frozenset({"good pose", "gyro"})
-UNKNOWN = "cannot told"
+UNKNOWN = "cannot be determined"
 
 
 def multipath(recording, rng):

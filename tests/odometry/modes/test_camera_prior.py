@@ -99,7 +99,7 @@ def test_one_mode_alone_is_never_left():
 @pytest.mark.parametrize(
     ("one", "message"),
     [
-        (SeenTerrain(3.0, "sand", 0.9), "'sand' at 3 s, which is no mode; expected one of ice, m"),
+        (SeenTerrain(3.0, "sand", 0.9), "at 3 s, which is no mode; expected one of ice, mud"),
         (SeenTerrain(3.0, "ice", 1.5), "confidence 1.5 at 3 s, expected 0 to 1"),
         (SeenTerrain(3.0, "ice", float("nan")), "confidence nan"),
     ],
