@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera import Camera
+from terrain.carried_image import carried_back, middles, terrain_after, tiles
 from terrain.images import to_grey
 
 WIDTH_PX = 160  # of the images that are compared: noise and compression are averaged away
@@ -61,29 +62,19 @@ class StillImage:
             None where the terrain need not have moved by FLOW_PX. False as well where the images
             agree in the place where terrain moved to: stripes along the way look alike in both.
         """
-        middles = _grid(before.shape, TILE_PX)
-        moves = np.linalg.norm(self._after(step, middles) - middles, axis=1) > FLOW_PX
+        here = middles(before.shape, TILE_PX)
+        there = terrain_after(self.camera, WIDTH_PX, step, here)
+        moves = np.linalg.norm(there - here, axis=1) > FLOW_PX
         if before.shape != after.shape or np.count_nonzero(moves) < FEWEST_TILES:
             return None
         in_place = _alike(before, after, moves)
         if in_place < STAYS:
             return False
-        carried = self._after(step, _grid(before.shape, 1)).reshape(*before.shape, 2)
-        u, v = (np.nan_to_num(of, nan=-1.0).astype(np.float32) for of in np.moveaxis(carried, 2, 0))
-        height, width = before.shape
-        inside = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
-        whole = moves & (_tiles(inside).min(axis=1) > 0)
+        moved, known = carried_back(self.camera, after, step)
+        whole = moves & (tiles(known, TILE_PX).min(axis=1) > 0)
         if np.count_nonzero(whole) < FEWEST_TILES:
             return in_place > SURELY
-        moved = cv2.remap(after, u, v, cv2.INTER_LINEAR)
         return _alike(before, moved, whole) < AS_WELL * _alike(before, after, whole)
-
-    def _after(self, step: FloatArray, pixels: FloatArray) -> FloatArray:
-        """Where terrain at pixels (N, 2) of a reduced image is after a step; NaN where nowhere."""
-        times = self.camera.image_size[0] / WIDTH_PX
-        places = self.camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
-        there = self.camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
-        return np.asarray((there + 0.5) / times - 0.5)
 
 
 class StillWatch:
@@ -115,15 +106,9 @@ class StillWatch:
         return self._stays
 
 
-def _grid(shape: tuple[int, ...], step_px: int) -> FloatArray:
-    """Middles (N, 2) of squares in an image of a shape (h, w), row by row."""
-    u, v = np.meshgrid(np.arange(shape[1] // step_px), np.arange(shape[0] // step_px))
-    return np.asarray((np.column_stack([u.ravel(), v.ravel()]) + 0.5) * step_px - 0.5)
-
-
 def _alike(one: AnyArray, other: AnyArray, chosen: BoolArray) -> float:
     """Correlation of two images that nearly all of the chosen tiles (K,) have."""
-    first, second = (_centred(_tiles(image)[chosen]) for image in (one, other))
+    first, second = (_centred(tiles(image, TILE_PX)[chosen]) for image in (one, other))
     sizes = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
     alike = (first * second).sum(axis=1) / np.maximum(sizes, 1e-9)
     return float(np.quantile(alike, 1 - NEARLY_ALL))
@@ -131,11 +116,3 @@ def _alike(one: AnyArray, other: AnyArray, chosen: BoolArray) -> float:
 
 def _centred(tiles: AnyArray) -> AnyArray:
     return np.asarray(tiles - tiles.mean(axis=1, keepdims=True))
-
-
-def _tiles(image: AnyArray) -> AnyArray:
-    """Parts (K, TILE_PX ** 2) of an image, row by row."""
-    rows, columns = (length // TILE_PX for length in image.shape)
-    whole = image[: rows * TILE_PX, : columns * TILE_PX]
-    tiles = whole.reshape(rows, TILE_PX, columns, TILE_PX).swapaxes(1, 2)
-    return np.asarray(tiles.reshape(rows * columns, -1))

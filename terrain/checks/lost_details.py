@@ -12,6 +12,7 @@ from odometry.checks.finding import Finding, Level
 from odometry.geometry import se2
 from odometry.run import Run
 from terrain.camera import Camera
+from terrain.carried_image import carried_back, tiles
 from terrain.checks.ground_steps import APART_S, pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
@@ -129,18 +130,10 @@ def change_of_details(
     """
     if before.shape != after.shape:
         return None
-    height, width = before.shape
-    u, v = np.meshgrid(np.arange(width), np.arange(height))
-    times = camera.image_size[0] / width
-    pixels = (np.column_stack([u.ravel(), v.ravel()]) + 0.5) * times - 0.5
-    places = se2.transform(se2.inverse(step), camera.pixels_to_ground(pixels))
-    there = (camera.ground_to_pixels(places) + 0.5) / times - 0.5
-    u, v = (np.nan_to_num(of, nan=-1.0).reshape(before.shape) for of in there.T)
-    inside = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
-    whole = _tiles(inside).min(axis=1) > 0
+    moved, known = carried_back(camera, after, step)
+    whole = tiles(known, TILE_PX).min(axis=1) > 0
     if np.count_nonzero(whole) < FEWEST_TILES:
         return None
-    moved = cv2.remap(after, u.astype(np.float32), v.astype(np.float32), cv2.INTER_LINEAR)
     return float(np.median((_details(moved) - _details(before))[whole]))
 
 
@@ -149,15 +142,9 @@ def _details(image: AnyArray) -> FloatArray:
     values = image.astype(np.float32)
     levels = [values, *(cv2.GaussianBlur(values, (0, 0), size) for size in SIZES_PX)]
     octaves = [
-        0.5 * np.log(_tiles((fine - coarse) ** 2).mean(axis=1) + LEAST_DETAIL**2)
+        0.5 * np.log(tiles((fine - coarse) ** 2, TILE_PX).mean(axis=1) + LEAST_DETAIL**2)
         for fine, coarse in pairwise(levels)
     ]
-    return np.asarray(np.mean(octaves, axis=0) - np.log(_tiles(values).mean(axis=1) + LEAST_GREY))
-
-
-def _tiles(image: AnyArray) -> AnyArray:
-    """Tiles (K, TILE_PX ** 2) of an image, row by row."""
-    rows, columns = (length // TILE_PX for length in image.shape)
-    whole = image[: rows * TILE_PX, : columns * TILE_PX]
-    parts = whole.reshape(rows, TILE_PX, columns, TILE_PX).swapaxes(1, 2)
-    return np.asarray(parts.reshape(rows * columns, -1))
+    return np.asarray(
+        np.mean(octaves, axis=0) - np.log(tiles(values, TILE_PX).mean(axis=1) + LEAST_GREY)
+    )

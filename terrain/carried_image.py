@@ -1,0 +1,48 @@
+"""Where the terrain of one image is in the next one, and images part by part."""
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.geometry import se2
+from terrain.camera import Camera
+
+
+def terrain_after(
+    camera: Camera, width_px: int, step: FloatArray, pixels: FloatArray
+) -> FloatArray:
+    """Where terrain at pixels (N, 2) of an image reduced to a width is after a step (3,).
+
+    The step is x, y [m], yaw [rad] of the second robot frame in the first; NaN where nowhere.
+    """
+    times = camera.image_size[0] / width_px
+    places = camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
+    there = camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
+    return np.asarray((there + 0.5) / times - 0.5)
+
+
+def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[AnyArray, BoolArray]:
+    """A reduced image (h, w) after a step, its terrain where it was before; and where it is known.
+
+    Both (h, w), the second False where terrain has left the image.
+    """
+    height, width = image.shape
+    there = terrain_after(camera, width, step, middles((height, width), 1))
+    u, v = (np.nan_to_num(of, nan=-1.0).reshape(height, width) for of in there.T)
+    known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
+    moved = cv2.remap(image, u.astype(np.float32), v.astype(np.float32), cv2.INTER_LINEAR)
+    return moved, np.asarray(known)
+
+
+def middles(shape: tuple[int, ...], size_px: int) -> FloatArray:
+    """Middles (N, 2) of squares in an image of a shape (h, w), row by row."""
+    u, v = np.meshgrid(np.arange(shape[1] // size_px), np.arange(shape[0] // size_px))
+    return np.asarray((np.column_stack([u.ravel(), v.ravel()]) + 0.5) * size_px - 0.5)
+
+
+def tiles(image: AnyArray, size_px: int) -> AnyArray:
+    """Squares (K, size_px ** 2) of an image (h, w), row by row."""
+    rows, columns = (length // size_px for length in image.shape)
+    whole = image[: rows * size_px, : columns * size_px]
+    parts = whole.reshape(rows, size_px, columns, size_px).swapaxes(1, 2)
+    return np.asarray(parts.reshape(rows * columns, -1))
