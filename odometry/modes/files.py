@@ -49,18 +49,18 @@ def write_modes(
     out = Path(out)
     written = [out / "modes.csv", out / "result.json"]
     write_csv_table(written[0], columns_of(followed, followed.motion))
-    sighted = out / "modes_with_sight.csv"
-    if followed.sighted is None:
-        sighted.unlink(missing_ok=True)  # of an earlier run
+    with_camera = out / "modes_with_sight.csv"
+    if followed.with_camera is None:
+        with_camera.unlink(missing_ok=True)  # of an earlier run
     else:
         seen = {"seen": np.where(followed.seen_labels == UNKNOWN, "", followed.seen_labels)}
-        write_csv_table(sighted, columns_of(followed, followed.sighted) | seen)
-        written.append(sighted)
+        write_csv_table(with_camera, columns_of(followed, followed.with_camera) | seen)
+        written.append(with_camera)
     with_feel = out / "modes_with_feel.csv"
-    if followed.felt is None:
+    if followed.with_feel is None:
         with_feel.unlink(missing_ok=True)
     else:
-        write_csv_table(with_feel, columns_of(followed, followed.felt))
+        write_csv_table(with_feel, columns_of(followed, followed.with_feel))
         written.append(with_feel)
     text = json.dumps(content_of(followed) | dict(about or {}), indent=2, allow_nan=False)
     with atomic_write(written[1]) as part:
@@ -130,7 +130,7 @@ def _fit_columns(fit: ModeFit, measured: Sequence[str]) -> dict[str, AnyArray]:
 def content_of(followed: Followed) -> dict[str, Any]:
     """What result.json holds; a number that is not finite is null."""
     mode_set, config = followed.mode_set, followed.config
-    sighted = followed.sighted
+    with_camera = followed.with_camera
     return {
         "format": FORMAT,
         "program": f"terrain-odometry {version('terrain-odometry')}",
@@ -159,8 +159,8 @@ def content_of(followed: Followed) -> dict[str, Any]:
         ],
         "not_checked": list(not_checked(followed)),
         "motion": track_content(followed, followed.motion),
-        "feel": None if followed.felt is None else track_content(followed, followed.felt),
-        "sight": None if sighted is None else track_content(followed, sighted),
+        "feel": None if followed.with_feel is None else track_content(followed, followed.with_feel),
+        "sight": None if with_camera is None else track_content(followed, with_camera),
         "disagreements": [
             {"from_s": from_s, "to_s": to_s, "seen": seen, "felt": felt}
             for from_s, to_s, seen, felt in followed.disagreements

@@ -20,7 +20,7 @@ from odometry.run import UNKNOWN, Run
 
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
 
-MOTION, FELT, SIGHTED = "motion alone", "motion and feel", "motion and camera"
+MOTION, MOTION_AND_FEEL, MOTION_AND_CAMERA = "motion alone", "motion and feel", "motion and camera"
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,10 @@ class Followed:
         That the filters were fed with.
     motion : ModeTrack
         By motion alone.
-    sighted : ModeTrack or None
+    with_camera : ModeTrack or None
         By motion and camera, and feel where there is a model of it; None without images.
     seen : tuple of SeenTerrain
-    felt : ModeTrack or None
+    with_feel : ModeTrack or None
         By motion and feel; None without a model of feel.
     """
 
@@ -93,20 +93,24 @@ class Followed:
     config: ModesConfig
     signals: Signals
     motion: ModeTrack
-    sighted: ModeTrack | None = None
+    with_camera: ModeTrack | None = None
     seen: tuple[SeenTerrain, ...] = ()
-    felt: ModeTrack | None = None
+    with_feel: ModeTrack | None = None
 
     @property
     def tracks(self) -> Mapping[str, ModeTrack]:
-        """By name: MOTION, FELT and SIGHTED where there was feel or a camera."""
-        every = {MOTION: self.motion, FELT: self.felt, SIGHTED: self.sighted}
+        """By name, MOTION first; the others where there was feel or a camera."""
+        every = {
+            MOTION: self.motion,
+            MOTION_AND_FEEL: self.with_feel,
+            MOTION_AND_CAMERA: self.with_camera,
+        }
         return {name: track for name, track in every.items() if track is not None}
 
     @property
     def last_track(self) -> ModeTrack:
         """The one that uses all there is."""
-        return self.sighted or self.felt or self.motion
+        return self.with_camera or self.with_feel or self.motion
 
     @property
     def seen_labels(self) -> AnyArray:
@@ -115,7 +119,7 @@ class Followed:
 
     @property
     def disagreements(self) -> tuple[tuple[float, float, str, str], ...]:
-        """Lasting ones of camera and feel: from, to [s], seen, felt."""
+        """Lasting ones of camera and motion: from, to [s], terrain by camera, mode by motion."""
         config = self.config
         return disagreements(self.motion, self.seen_labels, config.sure, config.lasting_s)
 
@@ -223,13 +227,13 @@ def followed(
     config = config or ModesConfig()
     signals = judged_signals(run, mode_set)
     motion = follow_signals(signals, mode_set, config, show_progress=show_progress)
-    felt = sighted = None
+    by_feel = by_camera = None
     if seen:
-        sighted = follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
+        by_camera = follow_signals(signals, mode_set, config, seen, show_progress=show_progress)
     if feel is not None:
         source = feel_source(run, feel, mode_set.names, mode_set.dwell_s)
-        felt, sighted = (
+        by_feel, by_camera = (
             None if track is None else with_feel(track, source, mode_set.dwell_s, config)
-            for track in (motion, sighted)
+            for track in (motion, by_camera)
         )
-    return Followed(run, mode_set, config, signals, motion, sighted, tuple(seen), felt)
+    return Followed(run, mode_set, config, signals, motion, by_camera, tuple(seen), by_feel)

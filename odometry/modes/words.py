@@ -7,11 +7,11 @@ import numpy as np
 from odometry.modes.camera_words import camera_words
 from odometry.modes.detection import Detection, Score
 from odometry.modes.doubts import LEAST_DOUBT, Doubt, doubts, not_checked
-from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed, Misfit
+from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed, Misfit
 from odometry.modes.mode_set import NO_MODES, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
 
-WHOSE = {MOTION: "", FELT: " with feel", SIGHTED: " with camera"}
+WHOSE = {MOTION: "", MOTION_AND_FEEL: " with feel", MOTION_AND_CAMERA: " with camera"}
 FEW = 4  # stretches, or answers, that are given one by one
 LEAST_SHARE = 0.005  # less is not reported
 LEAST_OPEN = 0.1  # of the undetermined time: sets of modes that are named
@@ -67,10 +67,10 @@ def _more(followed: Followed) -> Iterator[str]:
     yield from _open_words(followed)
     for one in doubts(followed):
         yield f"No mode is named where {one.reason}."
-    if followed.felt is not None:
-        yield f"With feel: {answer_words(followed, followed.felt)}"
-    if followed.sighted is not None:
-        yield f"With the camera: {answer_words(followed, followed.sighted)}"
+    if followed.with_feel is not None:
+        yield f"With feel: {answer_words(followed, followed.with_feel)}"
+    if followed.with_camera is not None:
+        yield f"With the camera: {answer_words(followed, followed.with_camera)}"
     for name, track in followed.tracks.items():
         count = followed.score(track).false_switches
         if count:

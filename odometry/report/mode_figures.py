@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from odometry.arrays import AnyArray
-from odometry.modes.followed import FELT, MOTION, SIGHTED, Followed
+from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed
 from odometry.modes.mode_set import NO_MODES
 from odometry.report.figure import mode_colours, save_figure
 from odometry.report.html import Picture
@@ -32,7 +32,7 @@ WIDTH_IN = 7.0
 STRIP_IN, LINES_IN, ROW_IN, STATE_IN, GAP_IN = 0.24, 1.45, 0.19, 1.25, 0.32
 LEGEND_ROW_IN, COLUMNS = 0.22, 4
 LEFT_IN, LETTER_IN = 0.77, 0.052
-ANSWERS = {MOTION: "answer", FELT: "with feel", SIGHTED: "with camera"}
+ANSWERS = {MOTION: "answer", MOTION_AND_FEEL: "with feel", MOTION_AND_CAMERA: "with camera"}
 
 
 def modes_picture(followed: Followed, folder: Path) -> Picture:

@@ -107,7 +107,7 @@ def test_many_refused_poses_are_named():
     assert "refused 2 of 12 poses" in hint
 
 
-def sighted(*labels_and_reasons):
+def seen_labels(*labels_and_reasons):
     """A result whose images got these labels."""
     of = result(classes=["gravel"])
     of.watcher.image_labels = [
@@ -118,22 +118,22 @@ def sighted(*labels_and_reasons):
 
 def test_vision_that_names_nothing_says_why():
     outside = ("", "the region lies outside the image")
-    (hint,) = run_notes(sighted(outside, outside, ("unknown", "")))
+    (hint,) = run_notes(seen_labels(outside, outside, ("unknown", "")))
     assert "named no terrain in any of 3 images" in hint
     assert "the region lies outside the image (2), unlike any training patch (1)" in hint
-    assert run_notes(sighted(outside, ("gravel", ""))) == []
-    assert run_notes(sighted()) == []
+    assert run_notes(seen_labels(outside, ("gravel", ""))) == []
+    assert run_notes(seen_labels()) == []
 
 
 def test_treads_on_two_terrains_are_no_matter_of_the_pitch():
     """As `--per-tread` labels them: a reason of its own for each pair of names."""
     edge = [("unknown", f"{ASTRIDE} {pair}") for pair in ("a on the left", "b on the left")]
     still = ("", "the robot is stationary")
-    (hint,) = run_notes(sighted(*edge, *edge, still, still, still))
+    (hint,) = run_notes(seen_labels(*edge, *edge, still, still, still))
     assert "one terrain for both treads in none of 7 images" in hint
     assert "--per-tread" in hint
     assert "pitch" not in hint
-    (hint,) = run_notes(sighted(*edge, still, still))
+    (hint,) = run_notes(seen_labels(*edge, still, still))
     assert "pitch" in hint
 
 

@@ -47,8 +47,8 @@ class Responses:
         reported = seen_poses(effects, poses, reported_of(scene))
         self._motion = motion_from_first(reported, windows)
         self._first_yaw = reported[windows[:, 0], 2]
-        felt = between(scene.time_s, scene.pose_s - base.gyro_latency_s)
-        self._felt = felt.rows(windows)
+        delayed = between(scene.time_s, scene.pose_s - base.gyro_latency_s)
+        self._delayed = delayed.rows(windows)
         self._by_rate = _by_rate(effects, twist[:, 2], scene) * scene.steps_s
 
     @property
@@ -77,7 +77,7 @@ class Responses:
         rows = np.empty((len(omega), len(self._scene), self._scene.rows_per_window))
         self._off_first(self._seen.of(moved), rows[..., : 3 * steps])
         if self._scene.reported_turns is not None:
-            felt = self._felt.of(_sum(omega * self._by_rate, np.empty_like(omega)))
+            felt = self._delayed.of(_sum(omega * self._by_rate, np.empty_like(omega)))
             np.subtract(felt[..., :-1], felt[..., 1:], out=rows[..., 3 * steps :])
         return rows
 

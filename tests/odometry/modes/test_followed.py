@@ -9,7 +9,7 @@ import pytest
 
 from odometry.modes.camera_prior import PULLED_S, SeenTerrain
 from odometry.modes.files import content_of, write_modes, write_runs
-from odometry.modes.followed import MOTION, SIGHTED, Followed, followed
+from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, Followed, followed
 from odometry.modes.track import ModesConfig
 from odometry.modes.words import answer_words, sentences
 from tests.odometry.modes.mode_examples import run_of, track, traction_set, velocity_set
@@ -72,8 +72,8 @@ def test_sight_at_the_start_decides_before_motion_does():
     sight = (SeenTerrain(0.0, "tar", 0.99),)
     both = followed(run_of(TURNS, labels=HALVES), velocity_set(), seen=sight)
     assert both.motion.probabilities[0] == pytest.approx([0.5, 0.5])
-    assert both.sighted.probabilities[0] == pytest.approx([ice, 1 - ice])
-    assert both.last_track is both.tracks[SIGHTED] is both.sighted
+    assert both.with_camera.probabilities[0] == pytest.approx([ice, 1 - ice])
+    assert both.last_track is both.tracks[MOTION_AND_CAMERA] is both.with_camera
 
 
 def test_sight_that_lies_is_argued_with():

@@ -181,11 +181,13 @@ def test_sight_decides_what_motion_leaves_open(straight):
     """From the place of the label on, and not before; a label of even odds changes nothing."""
     motion = follow_modes(straight, SET).probabilities
     for column, name in enumerate(NAMES):
-        sighted = follow_modes(straight, SET, seen=(SeenTerrain(4.0, name, 0.98),)).probabilities
+        with_camera = follow_modes(
+            straight, SET, seen=(SeenTerrain(4.0, name, 0.98),)
+        ).probabilities
         row = round(4.0 / STEP_S)
-        np.testing.assert_array_equal(sighted[:row], motion[:row])
-        assert (sighted[row:, column] > motion[row:, column]).all()
-        assert (sighted[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
+        np.testing.assert_array_equal(with_camera[:row], motion[:row])
+        assert (with_camera[row:, column] > motion[row:, column]).all()
+        assert (with_camera[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
     guessed = follow_modes(straight, SET, seen=(SeenTerrain(4.0, "tar", 0.5),)).probabilities
     np.testing.assert_allclose(guessed, motion, atol=1e-12)
 
