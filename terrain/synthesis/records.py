@@ -114,7 +114,10 @@ def run_settings(
     true_icrs_m: Mapping[str, FloatArray],
     photos_origin: str,
 ) -> dict[str, Any]:
-    """Content of `run.toml`; `[source]` holds what is needed to make the run again."""
+    """Content of `run.toml`; `[source]` holds what is needed to make the run again.
+
+    A run over one terrain names it, as `identify` and `label` need it.
+    """
     icrs = {name: [round(float(v), 6) for v in icr] for name, icr in true_icrs_m.items()}
     source = {
         "made_by": "terrain-odometry synthesise",
@@ -140,7 +143,12 @@ def run_settings(
         "driver": {k: v for k, v in asdict(config.driver).items() if k != "phases_rad"},
         "image_terrain": "the terrain of images.csv is that of the ground at the image's centre",
     }
-    return {"robot": dict(config.robot), "camera": config.camera.to_table(), "source": source}
+    one_terrain = {"run": {"terrain": config.zones[0]}} if len(set(config.zones)) == 1 else {}
+    return one_terrain | {
+        "robot": dict(config.robot),
+        "camera": config.camera.to_table(),
+        "source": source,
+    }
 
 
 def _columns(names: str, values: FloatArray) -> dict[str, AnyArray]:

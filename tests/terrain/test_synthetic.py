@@ -247,9 +247,10 @@ def test_command(tmp_path):
     assert result.exit_code == 0
     assert f"terrain-odometry train {out / 'patches'}" in result.stdout
     assert f"terrain-odometry run {out} " in result.stdout
-    source = tomllib.loads((out / "run.toml").read_text())["source"]
-    assert source["zones"] == ["brick"]
-    assert source["metres_per_pixel"] == 0.004
+    settings = tomllib.loads((out / "run.toml").read_text())
+    assert settings["run"] == {"terrain": "brick"}  # all of it
+    assert settings["source"]["zones"] == ["brick"]
+    assert settings["source"]["metres_per_pixel"] == 0.004
 
 
 def test_help_keeps_the_lines_of_its_example():
