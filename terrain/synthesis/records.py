@@ -69,12 +69,24 @@ def imu_table(
         for column, share in ((c, ROTATION if c.startswith("gyro") else 1.0) for c in columns):
             noise = sosfilt(band, rng.standard_normal(len(at_s)))
             columns[column] = columns[column] + share * grown * noise / noise.std()
-    twists = np.stack([np.interp(at_s, drive.stamps_s, of) for of in drive.twists_body.T], axis=1)
+    at_stamps = measured_twists(drive)
+    twists = np.stack([np.interp(at_s, drive.stamps_s, of) for of in at_stamps.T], axis=1)
     columns["gyro_z"] = columns["gyro_z"] + twists[:, 2]
     columns["accel_x"] = columns["accel_x"] + np.gradient(twists[:, 0], 1 / RATE_HZ)
     columns["accel_y"] = columns["accel_y"] + twists[:, 0] * twists[:, 2]
     columns["accel_z"] = columns["accel_z"] + GRAVITY_M_S2
     return {"t": at_s, **columns}
+
+
+def measured_twists(drive: Drive) -> FloatArray:
+    """Twists (N, 3) at the stamps as a sensor has them, whose bandwidth is finite.
+
+    Tread speeds hold until the next stamp and change there: the mean of the step before and of the
+    step after a stamp. The one after it alone would be half a step early, and so would the turn
+    that is integrated from it.
+    """
+    before = np.concatenate([drive.twists_body[:1], drive.twists_body[:-1]])
+    return (before + drive.twists_body) / 2
 
 
 Tables = dict[str, dict[str, AnyArray]]
@@ -86,7 +98,7 @@ def motion_tables(config: SynthesisConfig, drive: Drive, rng: np.random.Generato
     terrains = np.array(drive.terrains)
     count = len(drive.stamps_s)
     treads = drive.tread_speeds_m_s + config.sigma_tread_m_s * rng.standard_normal((count, 2))
-    gyro = drive.twists_body[:, 2] + config.sigma_gyro_rad_s * rng.standard_normal(count)
+    gyro = measured_twists(drive)[:, 2] + config.sigma_gyro_rad_s * rng.standard_normal(count)
     measured = slice(None, None, config.samples_between("pose_rate_hz"))
     poses = measured_poses(
         drive.poses_world[measured], config.sigma_position_m, config.sigma_yaw_rad, rng

@@ -20,7 +20,8 @@ from odometry.report.feel_page import write_feel_report
 from odometry.run import Run
 from tests.odometry.feel.feel_drives import drive
 
-FIRST_ROWS, FIRST_GIVEN = [0, 10, 30, 50], [0.44364731, 0.44957747, 0.45369787, 0.46806786]
+# of the shipped run since 0.29; on the one before it what 0.10 itself had given held to 1e-6
+FIRST_ROWS, FIRST_GIVEN = [0, 10, 30, 50], [0.43957133, 0.44865967, 0.45283565, 0.46888647]
 
 
 def test_a_model_comes_back_and_answers_alike(model, tmp_path):
