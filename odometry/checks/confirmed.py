@@ -9,7 +9,7 @@ from odometry.checks.finding import Finding, Level, disagreement
 from odometry.checks.strange_parts import strange_part
 from odometry.checks.undo import Mend, between, in_turn
 
-MOMENTS = frozenset({"pose_jumps", "yaw_jumps"})  # are undone by a cut
+MOMENTS = frozenset({"pose_jumps", "yaw_jumps", "recordings_joined"})  # are undone by a cut
 # Their time is left out: what then differs was not of the treads in it.
 LOST = frozenset({"stuck_encoder", "treads_frozen", "turn_blocked"})
 # Cannot be undone: what differs must be such as slip, or a constant rate, explains.
@@ -29,6 +29,7 @@ MOST_PARTS = 6  # the longest ones are compared
 # one side that loses samples seems to have another scale.
 TRIED_ALONE = frozenset(
     {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
+    | {"tread_late"}
     | {"treads_unequal", "tread_scale_changed", "dropped_speeds"}
 )
 

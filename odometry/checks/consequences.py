@@ -79,6 +79,21 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"one_motion"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
     "uneven_stamps": frozenset({"odometry_gap"}),
+    "tread_late": TREADS
+    | POSES
+    | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
+    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor", "yaw_jumps"},
+    "treads_held": TREADS
+    | POSES
+    | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
+    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "treads_frozen", "far_sensor"},
+    "coarse_yaw": YAW
+    | POSES
+    | {"yaw_jumps", "yaw_bent", "poses_unrelated", "gyroscope_unit", "interpolated_poses"}
+    | {"far_sensor", "track_width", "treads_frozen", "gyroscope_late", "treads_late"},
+    "positions_on_lines": POSES
+    | YAW
+    | {"pose_outliers", "positions_stretched", "position_axes", "treads_frozen", "far_sensor"},
     "saturated_speed": frozenset({"stuck_encoder", "pose_jumps", "treads_frozen"})
     | {"treads_unequal", "tread_offset", "slip", "scale", "track_width", "slip_in_turns"},
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})

@@ -12,6 +12,7 @@ from odometry.checks.motion import Motion
 from odometry.checks.relation import Relation, relation
 
 MOVING = 0.1  # of the ordinary fastest window
+EARLY = 0.3  # share of the windows, at either end of the recording
 STRAIGHT = 0.3  # share of the mean by which both treads differ at most
 LEAST_WINDOWS = 12  # of each group that is compared
 CERTAIN = 3.0  # standard deviations
@@ -137,6 +138,9 @@ def _of_way(motion: Motion) -> Groups:
     for degrees in (0, 45):
         along = np.cos(2 * (motion.course_rad - np.radians(degrees))) > 0
         yield (f"along {degrees} degrees of the map", "across"), moving & along, moving & ~along
+    first_s, last_s = np.quantile(motion.start_s, (EARLY, 1 - EARLY))
+    early, late = motion.start_s < first_s, motion.start_s > last_s
+    yield ("at first", "at last"), moving & early, moving & late
     yield from _of_place(motion)
 
 

@@ -118,8 +118,8 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             if evidence.pose_turn_by_treads
             else "",
             "pose.csv or odometry.csv is of another recording or another clock, its rows are out "
-            "of order, or yaw is no heading (the course over ground, a component of a quaternion, "
-            f"another axis, noise){'' if gyroscope is Sense.AGREES else OR_TREADS}",
+            "of order or were lost, or yaw is no heading (the course over ground, a component of a "
+            f"quaternion, another axis, noise){'' if gyroscope is Sense.AGREES else OR_TREADS}",
             "Plot the three yaw rates: check --picture",
         )
     elif gyroscope is unrelated and _moves(evidence.gyroscope_by_treads) and not together:

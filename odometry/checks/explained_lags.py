@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, disagreement
+from odometry.checks.held_treads import held_treads
 from odometry.checks.lag import Lag
 from odometry.checks.late_positions import apart_from_yaw
 from odometry.checks.late_stamps import one_side_alone
@@ -25,7 +26,7 @@ DIFFER = 0.02  # share of the turns not explained, below which sensors agree
 def explained_lags(evidence: Evidence) -> Iterator[Finding]:
     """The findings of `timing`: turns that differ otherwise seem late by chance.
 
-    Stamps that are late make both positions and yaw late, and both treads.
+    Stamps that are late make both positions and yaw late, both treads, and their turns and way.
     """
     lags = lags_of(evidence)
     found = list(found_in(evidence, lags))
@@ -33,6 +34,8 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
     if not any(finding.name == "clocks_apart" for finding in found):
         apart = apart_from_yaw(evidence, lags.get(("pose", "treads")))
     for finding in found:
+        if finding.name == "treads_late" and apart:
+            continue  # their mean is not
         if finding.name != "pose_late":
             yield from _judged(evidence, finding, lags)
         elif not apart:
@@ -46,6 +49,8 @@ def _judged(
     evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
 ) -> Iterator[Finding]:
     wheels = lags.get(("treads", "gyroscope"))
+    if finding.name == "treads_late" and any(held_treads(evidence)):
+        return  # by half of the time for which they are held
     if finding.name == "treads_late" and wheels and (of := one_side_alone(evidence, wheels)):
         yield disagreement(f"{finding.seen}, but {of}")
     elif finding.name not in OF_STAMPS or _is_explained(evidence, finding):

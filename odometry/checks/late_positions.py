@@ -77,7 +77,8 @@ def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:
     if abs(apart_s) < max(LEAST_APART_S, CERTAIN * sigma_s):
         return "" if abs(apart_s) < LEAST_APART_S else None
     return (
-        f"positions and yaw of pose.csv are not of one time: their speed is {lag.seconds:+.2f} s "
+        "positions and yaw of pose.csv, or mean and difference of the treads, are not of one time: "
+        f"their speed is {lag.seconds:+.2f} s "
         f"late against that of the treads, and their turns are {of_yaw.seconds:+.2f} s"
     )
 

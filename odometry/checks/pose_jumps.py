@@ -155,7 +155,8 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
         f"({counted(len(at_s), 'time')}, first at {evidence.run_time_s(at_s[0]):.1f} s)",
         "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
         "robot was pushed, carried or slid, or poses jump, or their stamps are off (late, or "
-        "of a clock of another rate), or these are commands and it coasts",
+        "of a clock of another rate), or these are commands and it coasts, or two "
+        "recordings are joined there",
         "Cut the recording with --from and --to",
         moments(evidence, at_s),
     )
@@ -171,7 +172,7 @@ def _pose_jumps(
         f"poses jump against what treads and yaw say, and stay, {counted(len(at_s), 'time')}: "
         f"{places} (usual: {usual_m:.2g} m)",
         "Poses jump: the reference was relocalised, its map or fix changed, or it held its pose or "
-        "its clock for a while",
+        "its clock for a while; or two recordings are joined there",
         "Number the stretches between jumps in a column `window`, or cut with --from and --to",
         moments(evidence, at_s),
     )

@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.heading import headings
+from odometry.checks.map_lines import drawn_to_lines
 from odometry.checks.position_noise import noisy_positions
 from odometry.checks.undo import times
 from odometry.checks.unit_findings import beyond_treads
@@ -105,7 +106,14 @@ def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
 def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
     steps = [step for column in positions.T if (step := _grid(column)) is not None]
     step_m = max(steps) if len(steps) == 2 else rounding_step_m(stamps_s, positions)
-    if step_m > COARSE_M:
+    if step_m > COARSE_M and drawn_to_lines(positions):
+        yield _finding(
+            "positions_on_lines",
+            "nearly each position has an x or a y of few values, and the other one is free",
+            "Positions are drawn to the lines of a map (a network of roads or lanes)",
+            "Record positions before they are matched to a map",
+        )
+    elif step_m > COARSE_M:
         yield _finding(
             "coarse_positions",
             f"positions come in steps of {step_m:.3g} m",

@@ -23,6 +23,7 @@ HALVED = 0.6  # share of the residual squares that is left when proportion is gi
 HELD = 0.95  # share of the motion explained then: else it may be slip
 # Where less is explained; of 28 real recordings that ratio is 1.1 at most.
 HARDLY_HELD, FAR_UNLIKE = 0.8, 1.5
+PARTS, AS_WELL = 32, 0.9  # of the time, and times what a curve leaves of the way
 ONE_SIDE = 0.12  # turn at full speed straight on, as a share of that by one tread alone
 NARROW = 1.2  # track widths: robots that were measured turn as if 1.0 to 3.1 wide
 WHOLE = 0.85  # share of the way along that one column has
@@ -55,6 +56,9 @@ def proportion(evidence: Evidence) -> Iterator[Finding]:
     )
     sure = any(part.certain(1, CERTAIN) for part in parts)
     named = sure and _explains(plain, bent, 1) and _slow_by_fast(bent) < SQUARED
+    if named and 1 - _explained_by_time(evidence) < AS_WELL * (1 - bent.explained):
+        yield disagreement(f"{seen}, or by factors that change with time")
+        return
     if bent.explained < HELD or not named:
         if bent.explained > HARDLY_HELD and bent.certain(1) and _slow_by_fast(bent) > FAR_UNLIKE:
             yield disagreement(seen)
@@ -67,6 +71,17 @@ def proportion(evidence: Evidence) -> Iterator[Finding]:
         "motors (a duty cycle, throttle or voltage), or encoders miss ticks",
         "Log measured wheel speeds",
     )
+
+
+def _explained_by_time(evidence: Evidence) -> float:
+    """Share of the squares of the way that one factor for each short part of the time explains."""
+    mean_m, forward_m = evidence.motion.mean_m, evidence.forward_m
+    rows = np.array_split(np.flatnonzero(np.isfinite(forward_m)), PARTS)
+    left = 0.0
+    for part in rows:
+        of, by = forward_m[part], mean_m[part]
+        left += float(np.sum(of**2) - (of @ by) ** 2 / max(float(by @ by), 1e-300))
+    return 1 - left / max(float(np.nansum(forward_m**2)), 1e-300)
 
 
 def _has_both(evidence: Evidence) -> bool:

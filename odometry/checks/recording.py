@@ -9,6 +9,7 @@ import numpy as np
 
 from odometry.checks.attitude import attitude
 from odometry.checks.blocked_turns import blocked_turns
+from odometry.checks.coarse_yaw import coarse_yaw
 from odometry.checks.compass_error import bent
 from odometry.checks.computed_poses import computed_poses
 from odometry.checks.confirmed import alone, confirmed
@@ -26,8 +27,11 @@ from odometry.checks.explained_lags import explained_lags
 from odometry.checks.finding import CheckReport, Finding, Level, in_order
 from odometry.checks.gaps import gaps
 from odometry.checks.gyroscope import gyroscope
+from odometry.checks.held_treads import held_treads
 from odometry.checks.interleaved import interleaved
+from odometry.checks.joined_recordings import joined_recordings, without_seams
 from odometry.checks.late_positions import late_positions, position_lag
+from odometry.checks.one_column_late import one_column_late
 from odometry.checks.one_encoder import one_encoder
 from odometry.checks.one_motion import one_motion
 from odometry.checks.pose_values import pose_values
@@ -61,7 +65,9 @@ CHECKS: tuple[Check, ...] = (
     stamp_pace,
     interleaved,
     computed_poses,
+    joined_recordings,
     pose_values,
+    coarse_yaw,
     smoothed_poses,
     agreement,
     yaw_against_course,
@@ -72,6 +78,8 @@ CHECKS: tuple[Check, ...] = (
     robot_sizes,
     equal_treads,
     one_encoder,
+    held_treads,
+    one_column_late,
     unsigned,
     scale_change,
     units,
@@ -133,7 +141,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     with np.errstate(over="ignore", invalid="ignore"):
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
-        confirmed_ones = confirmed(evidence, without_consequences(found), _found)
+        confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
     findings = in_order([*copies, *confirmed_ones])
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 

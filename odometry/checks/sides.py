@@ -18,6 +18,7 @@ LEFT = 0.6  # share of the squares of what treads do not explain that an offset 
 ARM = 0.5  # of the way along: more than an arm of the sensor adds to one tread
 LASTING = 0.4  # share of the logarithm of a ratio that each piece of the recording has
 TOO_LITTLE = 1.1  # metres moved for each of the mean tread travel, which no slip makes
+AS_WELL = 1.15  # times what an offset leaves of the turns: the other one explains them as well
 TWIST = 0.15  # share of the turn that may come from the other column
 
 MIXED = (
@@ -142,11 +143,10 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     plain = relation(evidence.pose_turn_rad, m.left_m, m.right_m)
     if turn is None or not turn.certain(2, TIMES) or turn.explained < HELD:
         return
-    if plain is not None and 1 - turn.explained > LEFT * (1 - plain.explained):
-        return  # it explains little of what the treads do not
+    little = plain is not None and 1 - turn.explained > LEFT * (1 - plain.explained)
     offset = float(turn.coefficients[2] / np.mean(np.abs(turn.coefficients[:2])))
-    if abs(offset) < LEAST_OFFSET_M_S:
-        return
+    if little or abs(offset) < LEAST_OFFSET_M_S:
+        return  # or it explains little of what the treads do not
     forward = relation(evidence.forward_m, m.left_m, m.right_m, m.lasts_s)
     if forward is None or not forward.certain(2, 3.0):
         return  # a turn alone may as well be slip that differs from side to side
@@ -154,6 +154,9 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     if not 0.5 < abs(along / (forward.coefficients[:2].mean() * offset)) < 2.0:
         return
     left = (along < 0) == (offset > 0)
+    if mixed := _a_part_of_the_other(evidence, turn, left):
+        yield disagreement(mixed)
+        return
     reads = offset if left else -offset
     tread = f"The {'left' if left else 'right'} tread has"
     yield Finding(
@@ -165,6 +168,20 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         "a zero that was never set; or it reads too much at times (peaks that are held)",
         "Look what it reads while the robot is stationary: an offset stays, and can be subtracted",
         mend=changed("odometry", "v_left" if left else "v_right", lambda speed: speed - reads),
+    )
+
+
+def _a_part_of_the_other(evidence: Evidence, offset: Relation, left: bool) -> str:
+    """Words where the size of the other tread, in place of a constant, explains turns as well."""
+    m = evidence.motion
+    size_m = np.abs(m.right_m if left else m.left_m)
+    rival = relation(evidence.pose_turn_rad, m.left_m, m.right_m, size_m)
+    if rival is None or 1 - rival.explained > AS_WELL * (1 - offset.explained):
+        return ""
+    side, other = ("left", "right") if left else ("right", "left")
+    return (
+        f"the {side} tread reads a constant besides its speed, or a part of the size of that of "
+        f"the {other} tread: both explain the turns alike"
     )
 
 

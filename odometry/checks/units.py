@@ -106,6 +106,8 @@ def _longer_by_noise(evidence: Evidence) -> float:
 def _gyroscope_factor(evidence: Evidence) -> float | None:
     """Factor by which the gyroscope is too large; None where it is in rad/s or not known."""
     by_gyroscope = evidence.pose_turn_by_gyroscope
+    if not _lasts_by_treads(evidence):
+        return None
     if by_gyroscope is not None and by_gyroscope.certain() and _holds(by_gyroscope):
         factor = 1 / abs(by_gyroscope.slope)
         m = evidence.turn_motion
@@ -120,6 +122,14 @@ def _gyroscope_factor(evidence: Evidence) -> float | None:
     width = 1 / (abs(found.slope) * evidence.run.robot.track_width)
     degrees = width < 0.2 and float(np.quantile(np.abs(rate[1]), 0.99)) > 4.0
     return 180 / np.pi if degrees else None
+
+
+def _lasts_by_treads(evidence: Evidence) -> bool:
+    """Whether no quarter of the time has another unit than the others, by the treads."""
+    m = evidence.uniform
+    fits = pieces(m.gyroscope_rad, m.difference_m, m.lasts_s)
+    sizes = [abs(of.slope) for of in fits if of.certain()]
+    return not sizes or max(sizes) < EXTREME * min(sizes)
 
 
 def _holds(by_gyroscope: Relation) -> bool:

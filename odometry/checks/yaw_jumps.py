@@ -31,7 +31,8 @@ AS_COURSE = (
 )
 CORRECTED = (
     "Yaw jumps: the heading of the reference was corrected, lost or held for a while "
-    "(magnetometer, antennas), or has another meaning in a part of the run",
+    "(magnetometer, antennas), or has another meaning in a part of the run; or "
+    "two recordings are joined there",
     "Number the stretches between jumps in a column `window`, or cut with --from and --to",
 )
 

@@ -1,0 +1,111 @@
+"""One column of the treads late against the other, values that are held, and rows of two runs."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from odometry.checks.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.table import Table
+from tests.odometry.checks.faulty import put, treads
+from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+
+ROWS = 4000
+
+
+def varied(seed=0):
+    """A drive of stops, straights and turns, which no shift imitates."""
+    at_s = 0.05 * np.arange(ROWS)
+    speed = 0.6 + 0.5 * np.sin(at_s / 4) + 0.2 * np.sin(at_s / 1.1)
+    turn = 0.35 * np.sin(at_s / 5.7) + 0.3 * np.sin(at_s / 1.7) + 0.1
+    rest = (at_s < 2) | (at_s > at_s[-1] - 2)
+    return drive(np.where(rest, 0.0, speed), np.where(rest, 0.0, turn), seed=seed)
+
+
+def warnings(run):
+    return list(check_recording(run).at(Level.WARNING))
+
+
+@pytest.mark.parametrize("rows", [10, 16])
+@pytest.mark.parametrize("side", ["v_left", "v_right"])
+def test_a_column_that_is_shifted_is_named_with_its_time(rows, side):
+    run = varied()
+    (found,) = warnings(put(run, "odometry", **{side: np.roll(run.odometry[side], rows)}))
+    assert found.name == "tread_late"
+    assert found.cause.startswith(f"{side} alone is late")
+    assert f"{rows * 0.05:.2f} s" in found.seen
+    mended = found.mend(put(run, "odometry", **{side: np.roll(run.odometry[side], rows)}))
+    inside = slice(100, -100)
+    off = mended.odometry[side][inside] - run.odometry[side][inside]
+    assert np.sqrt(np.mean(off**2)) < 0.05 * np.std(run.odometry[side])
+
+
+def test_both_columns_late_are_no_column_late():
+    run = varied()
+    (found,) = warnings(treads(run, lambda left, right: (np.roll(left, 12), np.roll(right, 12))))
+    assert found.name == "treads_late"
+
+
+def test_yaw_that_follows_the_speed_is_no_column_late():
+    """Without a gyroscope its turns are those of two columns of different times."""
+    run = without_gyroscope(varied())
+    speed = np.interp(run.pose["t"], run.odometry["t"], run.odometry["v_left"])
+    beside = put(run, "pose", yaw=run.pose["yaw"] + 0.6 * speed)
+    assert "tread_late" not in [finding.name for finding in warnings(beside)]
+
+
+def test_a_straight_drive_has_no_column_late():
+    speed = 0.5 + 0.4 * np.sin(0.05 * np.arange(ROWS))
+    run = drive(speed, np.full(ROWS, 0.002))
+    assert "tread_late" not in [finding.name for finding in warnings(run)]
+
+
+@pytest.mark.parametrize("held_s", [0.6, 1.2, "irregular"])
+def test_speeds_that_are_held_are_not_late(held_s):
+    run = varied()
+    t = run.odometry["t"]
+    steps = np.random.default_rng(1).uniform(0.3, 1.5, 500) if held_s == "irregular" else held_s
+    begins = t[0] + np.cumsum(np.broadcast_to(steps, 500))
+    rows = np.searchsorted(t, np.append(t[0], begins)[np.searchsorted(begins, t, side="right")])
+    rows = np.minimum(rows, np.arange(len(t)))
+    (found,) = warnings(treads(run, lambda left, right: (left[rows], right[rows])))
+    assert found.name == "treads_held"
+
+
+def joined(first, second, gap_s):
+    """Tables of one drive after those of another."""
+    later_s = first.odometry["t"][-1] + gap_s
+
+    def one(table, other):
+        columns = {
+            name: np.concatenate([table[name], other[name] + later_s * (name == "t")])
+            for name in table.columns
+        }
+        return Table(Path(table.file), columns, np.arange(2, 2 + len(columns["t"])))
+
+    tables = {
+        name: one(getattr(first, name), getattr(second, name)) for name in ("odometry", "pose")
+    }
+    return replace(first, **tables)
+
+
+def elsewhere(run):
+    return put(run, "pose", x=30 - run.pose["x"], y=8 - run.pose["y"], yaw=run.pose["yaw"] + np.pi)
+
+
+@pytest.mark.parametrize("gap_s", [0.1, 1.0])
+@pytest.mark.parametrize("gyroscope", [True, False])
+def test_two_recordings_in_one_file_are_said_before_what_else_moves_poses(gap_s, gyroscope):
+    run = joined(varied(), elsewhere(varied(seed=3)), gap_s)
+    (found,) = warnings(run if gyroscope else without_gyroscope(run))
+    assert found.name == "recordings_joined"
+    assert "cannot be distinguished" in found.cause
+    assert found.spans_s[0][0] == pytest.approx(ROWS * 0.05, abs=0.5)
+
+
+def test_a_reference_that_jumps_while_the_robot_drives_is_no_file_of_two():
+    run = varied()
+    x = run.pose["x"] + 8.0 * (np.arange(len(run.pose)) > 900)
+    assert [finding.name for finding in warnings(put(run, "pose", x=x))] == ["pose_jumps"]
