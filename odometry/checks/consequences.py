@@ -4,7 +4,10 @@ from collections.abc import Sequence
 
 from odometry.checks.finding import Finding, Level
 
-POSES = frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip", "scale", "position_unit"})
+POSES = frozenset(
+    {"pose_late", "pose_jumps", "clocks_apart", "slip", "scale", "position_unit"}
+    | {"recordings_joined"}
+)
 YAW = frozenset({"yaw_backwards", "yaw_off_by_90", "yaw_offset", "yaw_unrelated"})
 TREADS = frozenset({"slip", "slip_in_turns", "scale", "tread_unit", "position_unit", "track_width"})
 
@@ -86,7 +89,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_held": TREADS
     | POSES
     | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
-    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "treads_frozen", "far_sensor"},
+    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor"},
     "coarse_yaw": YAW
     | POSES
     | {"yaw_jumps", "yaw_bent", "poses_unrelated", "gyroscope_unit", "interpolated_poses"}
@@ -158,7 +161,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "frozen_poses": frozenset(
         {"yaw_bent", "positions_stretched", "pose_jumps", "pose_late", "yaw_jumps", "slip_episodes"}
     ),
-    "coarse_speeds": frozenset({"stuck_encoder"}),
+    "coarse_speeds": frozenset({"stuck_encoder", "treads_held"}),
     "position_unit": frozenset({"far_sensor"}),
     "position_axes": POSES | YAW | {"position_unit", "positions_stretched", "positions_mirrored"},
     "positions_stretched": frozenset({"scale"}),

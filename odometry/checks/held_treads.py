@@ -7,7 +7,8 @@ import numpy as np
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 
-LONG_HOLD_S = 0.3  # from which a speed that is held makes the treads late
+# From which treads are late by held speeds, and from which a turn of a second has one value.
+LONG_HOLD_S, MISLEADS_S = 0.3, 0.5
 LEAST_HOLDS = 20
 # Share of the new values that come in the row after another new one: of speeds that are renewed in
 # each row, and rest at times, a third and more.
@@ -29,7 +30,7 @@ def held_treads(evidence: Evidence) -> Iterator[Finding]:
         return
     yield Finding(
         "treads_held",
-        Level.WARNING,
+        Level.WARNING if usual_s > MISLEADS_S else Level.NOTE,
         f"v_left and v_right are renewed only every {usual_s:.2g} s and repeated in the rows "
         f"between ({evidence.period_s:.2g} s apart)",
         "The treads are read more slowly than they are logged: the log holds their last value, "
