@@ -78,6 +78,7 @@ def _left(evidence: Evidence, mend: Mend) -> float:
 NAMES = {"pose": "poses", "treads": "treads", "gyroscope": "gyroscope"}
 
 EVEN = 1e-3  # of the period
+SMOOTH = "; or its rate is smoothed (a low-pass filter)"
 MADE_UP = "; or rows of odometry.csv were lost, and its stamps made up at an even pace"
 
 
@@ -158,7 +159,7 @@ def gyroscope_late(evidence: Evidence, lag: Lag) -> Finding:
         Level.WARNING,
         _seen("gyroscope", lag, "pose and treads"),
         f"Stamps of gyroscope are {word}: a delay of the sensor, its filter or its transport, or "
-        "stamps at arrival",
+        f"stamps at arrival{SMOOTH * (lag.seconds > 0)}",
         _remedy("gyroscope", lag),
         mend=mend,
     )

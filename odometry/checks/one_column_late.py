@@ -10,7 +10,6 @@ from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level
 from odometry.checks.measured_turns import MeasuredTurns, measured_turns
 from odometry.checks.relation import relation
-from odometry.checks.turn_signs import lasting_turn_rad
 from odometry.checks.undo import in_turn, sooner
 
 GRID_S, MOST_S = 0.05, 1.5
@@ -20,7 +19,6 @@ LEAST_S = 0.15  # of one column against the other
 # more, 0.18 to 0.5 of one through a low pass.
 LEFT, LEFT_BY_POSES = 0.35, 0.5
 HELD = 0.9  # share of the turns that is explained then
-LEAST_TURN_RAD = 1.0  # range of the heading
 LEAST_ANGLE = 1e-3  # squared sine of the angle between both columns: less is a straight drive
 SAME_S = 0.15  # by which both sensors of turns may differ
 DIFFER = 0.01  # share of the turns not explained, below which nothing is late
@@ -112,8 +110,7 @@ def _shifts(evidence: Evidence, sensor: MeasuredTurns) -> Shifts | None:
     begin_s, end_s = (stamps[None, :] + steps_s[:, None] for stamps in (m.start_s, m.end_s))
     ways = [side(end_s) - side(begin_s) for side in (of.left_m, of.right_m)]
     known = np.isfinite(sensor.target) & np.isfinite(ways).all(axis=(0, 1))
-    turned_rad = lasting_turn_rad(sensor.target[known], m.lasts_s[known])
-    if known.sum() < LEAST_WINDOWS or turned_rad < LEAST_TURN_RAD:
+    if known.sum() < LEAST_WINDOWS:
         return None
     left_m, right_m = (way[:, known] for way in ways)
     squares = _squares_left(left_m, right_m, sensor.target[known])

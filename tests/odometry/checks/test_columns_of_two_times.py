@@ -6,7 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from odometry.checks.evidence import Evidence
+from odometry.checks.explained_lags import explained_lags
 from odometry.checks.finding import Level
+from odometry.checks.one_column_late import _squares_left
 from odometry.checks.recording import check_recording
 from odometry.table import Table
 from tests.odometry.checks.faulty import put, treads
@@ -56,10 +59,17 @@ def test_yaw_that_follows_the_speed_is_no_column_late():
     assert "tread_late" not in [finding.name for finding in warnings(beside)]
 
 
-def test_a_straight_drive_has_no_column_late():
-    speed = 0.5 + 0.4 * np.sin(0.05 * np.arange(ROWS))
-    run = drive(speed, np.full(ROWS, 0.002))
-    assert "tread_late" not in [finding.name for finding in warnings(run)]
+def test_a_drive_that_hardly_turns_has_no_column_late():
+    at_s = 0.05 * np.arange(ROWS)
+    run = drive(0.5 + 0.4 * np.sin(at_s), 0.05 * np.sin(at_s / 1.7))
+    shifted = put(run, "odometry", v_left=np.roll(run.odometry["v_left"], 12))
+    assert "tread_late" not in [finding.name for finding in warnings(shifted)]
+
+
+def test_columns_of_a_straight_drive_explain_no_turns(rng):
+    left, turns = rng.normal(1, 0.3, 80)[None, :], rng.normal(0, 1e-3, 80)
+    right = left + 1e-4 * turns
+    assert _squares_left(left, right, turns) == pytest.approx(np.sum(turns**2))
 
 
 @pytest.mark.parametrize("held_s", [0.7, 1.2, "irregular"])
@@ -105,7 +115,25 @@ def test_two_recordings_in_one_file_are_said_before_what_else_moves_poses(gap_s,
     assert found.spans_s[0][0] == pytest.approx(ROWS * 0.05, abs=0.5)
 
 
-def test_a_reference_that_jumps_while_the_robot_drives_is_no_file_of_two():
+@pytest.mark.parametrize(("row", "turn_rad"), [(900, 1.0), (900, 0.0), (15, 0.0)])
+def test_positions_that_jump_in_motion_or_without_yaw_are_no_file_of_two(row, turn_rad):
+    """Row 15 lies in the rest of two seconds from which the drive begins."""
     run = varied()
-    x = run.pose["x"] + 8.0 * (np.arange(len(run.pose)) > 900)
-    assert [finding.name for finding in warnings(put(run, "pose", x=x))] == ["pose_jumps"]
+    later = np.arange(len(run.pose)) > row
+    columns = {"x": run.pose["x"] + 8.0 * later, "yaw": run.pose["yaw"] + turn_rad * later}
+    names = [finding.name for finding in warnings(put(run, "pose", **columns))]
+    assert names
+    assert "recordings_joined" not in names
+
+
+def test_turns_that_are_late_where_the_way_is_not_are_no_late_treads():
+    """A filter of the turn rate alone, before both speeds were made of it."""
+    run = varied()
+
+    def late_turns(left, right):
+        mean, half = (left + right) / 2, np.roll((right - left) / 2, 10)
+        return mean - half, mean + half
+
+    (found,) = explained_lags(Evidence(treads(run, late_turns)))
+    assert found.name == "sensors_disagree"
+    assert "mean and difference of the treads" in found.seen

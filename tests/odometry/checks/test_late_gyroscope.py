@@ -45,6 +45,7 @@ def test_where_poses_decide_one_is_named(seconds):
         for names in (("gyro_z",), TREADS)
     )
     assert gyroscope.name == "gyroscope_late"
+    assert ("smoothed" in gyroscope.cause) == (seconds > 0)
     assert treads.name in ("treads_late", "treads_are_commands")
     assert "poses do not decide" not in treads.cause
 
