@@ -35,8 +35,8 @@ def joined_recordings(evidence: Evidence) -> Iterator[Finding]:
         f"positions{yaw} begin anew {counted(len(spans), 'time')}, first at {spans[0][0]:.1f} s, "
         "while both treads stand",
         "Two recordings are joined in one file, each with poses of its own origin; or the robot "
-        "was carried, driven while nothing was logged, or its reference began anew, while it "
-        "stood: these cannot be distinguished",
+        "was carried, driven while nothing was logged, or its reference restarted (a reset, a "
+        "relocalisation), while it stood: these cannot be distinguished",
         "Cut the recording there with --from and --to",
         tuple(spans),
     )
