@@ -8,6 +8,9 @@ from odometry.geometry import se2
 from terrain.camera import Camera
 
 
+NODE_PX = 8  # between such pixels the way of terrain is interpolated, off by 0.1 px at the most
+
+
 def terrain_after(
     camera: Camera, width_px: int, step: FloatArray, pixels: FloatArray
 ) -> FloatArray:
@@ -27,10 +30,18 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     Both (h, w), the second False where terrain has left the image.
     """
     height, width = image.shape
-    there = terrain_after(camera, width, step, middles((height, width), 1))
-    u, v = (np.nan_to_num(of, nan=-1.0).reshape(height, width) for of in there.T)
+    rows, columns = np.arange(0, height + NODE_PX, NODE_PX), np.arange(0, width + NODE_PX, NODE_PX)
+    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2).astype(np.float64)
+    there = terrain_after(camera, width, step, nodes).reshape(len(rows), len(columns), 2)
+    at_v, at_u = np.mgrid[:height, :width].astype(np.float32) / NODE_PX
+    u, v = (
+        np.nan_to_num(
+            cv2.remap(there[..., axis].astype(np.float32), at_u, at_v, cv2.INTER_LINEAR), nan=-1.0
+        )
+        for axis in (0, 1)
+    )
     known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
-    moved = cv2.remap(image, u.astype(np.float32), v.astype(np.float32), cv2.INTER_LINEAR)
+    moved = cv2.remap(image, u, v, cv2.INTER_LINEAR)
     return moved, np.asarray(known)
 
 
