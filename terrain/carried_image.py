@@ -7,7 +7,6 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera import Camera
 
-
 NODE_PX = 8  # between such pixels the way of terrain is interpolated, off by 0.1 px at the most
 
 

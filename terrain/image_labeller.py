@@ -20,11 +20,13 @@ from terrain.image_label import ImageLabel, answered
 from terrain.images import read_image
 from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.still_image import StillWatch
+from terrain.terrain_details import DetailsWatch
 from terrain.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
 KEPT = 200  # statistics of the latest images
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
 WORTH_OF_UNLIKE = 0.3
+LOST_DETAILS = "the image lost details of the terrain: fog, a wet lens, another focus"
 
 
 class RunLikeness:
@@ -109,15 +111,15 @@ class ImageLabeller:
         self._folder = folder
         self._has_answered = False
         self._before: ByteImage | None = None
-        self._still = StillWatch(camera)
+        self._still, self._details = StillWatch(camera), DetailsWatch(camera)
 
     def label(self, frame: Frame, estimate: Estimate, pose: FloatArray | None = None) -> ImageLabel:
         """Classify the region ahead in the image of a frame.
 
         An image that cannot be read, a grey one where the classifier needs colour, one of another
         size among good ones, or one that equals the one before, is an image label without a name,
-        so that one bad file does not end a long run. So is one that stays the same although
-        the robot moves, by its pose (3,), if that is given.
+        so that one bad file does not end a long run. So is one that stays the same although the
+        robot moves, or that lost details of the terrain, by its pose (3,), if that is given.
 
         Raises
         ------
@@ -142,8 +144,8 @@ class ImageLabeller:
         if isinstance(region, NoRegion):
             return ImageLabel(frame.stamp_s, name, reason=region.reason)
         image = self._read(frame.image, name or f"the image of {frame.stamp_s} s")
-        if not isinstance(image, str) and pose is not None and self._still.stays(image, pose):
-            image = "the image stays the same while the treads move"
+        if not isinstance(image, str) and pose is not None:
+            image = self._fault(image, pose) or image
         if isinstance(image, str):
             return ImageLabel(frame.stamp_s, name, region=region, reason=image)
         views = [self._view(image, r) for r in region.rectangles]
@@ -172,6 +174,13 @@ class ImageLabeller:
         if self.classifier.colour_ and image.ndim != 3:
             return "the image is grey, the model was trained with colour"
         return image
+
+    def _fault(self, image: ByteImage, pose: FloatArray) -> str:
+        """Why an image shows no terrain ahead that may be named, by those before it; or ""."""
+        has_lost = self._details.has_lost(image, pose)
+        if self._still.stays(image, pose):
+            return "the image stays the same while the treads move"
+        return LOST_DETAILS if has_lost else ""
 
     def _repeats(self, image: ByteImage) -> bool:
         """Whether an image equals the one before: a camera that is frozen shows nothing new."""

@@ -2,9 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
-import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
@@ -12,16 +10,12 @@ from odometry.checks.finding import Finding, Level
 from odometry.geometry import se2
 from odometry.run import Run
 from terrain.camera import Camera
-from terrain.carried_image import carried_back, tiles
 from terrain.checks.ground_steps import APART_S, pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
+from terrain.terrain_details import change_of_details, details_of_tiles
 
-SIZES_PX = (0.7, 1.4, 2.8)  # details of an octave each, in images 320 px wide
-TILE_PX, FEWEST_TILES = 32, 8
-LEAST_GREY, LEAST_DETAIL = 5.0, 0.5  # so that darkness and noise do not count
-# Logarithm of details over light, from an image to the next on the same terrain. Rocking, noisy
-# cameras had -0.31 to 0.19, another gamma (0.6) -0.4 to -0.64; fog -0.9 to -1.4
+# Logarithm of details over light: another gamma (0.6) has -0.4 to -0.64, fog -0.9 to -1.4
 HALF = float(np.log(2.0))
 WORTH_A_LOOK = HALF / 2  # of images that are looked at first, whatever terrain they show
 FEWEST_LOOKS = 3  # of these on a stretch: one blurred image is none
@@ -89,7 +83,7 @@ class _DetailsOfRun:
     def level(self, row: int) -> float:
         """Mean logarithm of details over light of an image, whatever it shows."""
         image = self.views.grey(str(self.files[row]))
-        return float("nan") if image is None else float(_details(image).mean())
+        return float("nan") if image is None else float(details_of_tiles(image).mean())
 
     def change(self, first: int, last: int) -> tuple[int, float] | None:
         """The row after a change by half or more on the same terrain, and its logarithm."""
@@ -109,42 +103,3 @@ class _DetailsOfRun:
         step = se2.exp(np.column_stack([travel_m, 0 * travel_m, turn_rad]))[0]
         change = change_of_details(self.camera, before, after, step)
         return None if change is None or abs(change) < HALF else (last, change)
-
-
-def change_of_details(
-    camera: Camera, before: AnyArray, after: AnyArray, step: FloatArray
-) -> float | None:
-    """Logarithm of details over light in one grey image (h, w) over those in another.
-
-    Parameters
-    ----------
-    camera : Camera
-    before, after : (h, w)
-    step : (3,)
-        x, y [m], yaw [rad] of the second robot frame in the first.
-
-    Returns
-    -------
-    float or None
-        Median over tiles of terrain that both show; None where these are too few.
-    """
-    if before.shape != after.shape:
-        return None
-    moved, known = carried_back(camera, after, step)
-    whole = tiles(known, TILE_PX).min(axis=1) > 0
-    if np.count_nonzero(whole) < FEWEST_TILES:
-        return None
-    return float(np.median((_details(moved) - _details(before))[whole]))
-
-
-def _details(image: AnyArray) -> FloatArray:
-    """Logarithm of details over light (K,) of each tile: mean of that of three octaves."""
-    values = image.astype(np.float32)
-    levels = [values, *(cv2.GaussianBlur(values, (0, 0), size) for size in SIZES_PX)]
-    octaves = [
-        0.5 * np.log(tiles((fine - coarse) ** 2, TILE_PX).mean(axis=1) + LEAST_DETAIL**2)
-        for fine, coarse in pairwise(levels)
-    ]
-    return np.asarray(
-        np.mean(octaves, axis=0) - np.log(tiles(values, TILE_PX).mean(axis=1) + LEAST_GREY)
-    )

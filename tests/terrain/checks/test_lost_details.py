@@ -7,16 +7,8 @@ import pytest
 from odometry.checks.finding import CheckReport
 from terrain.believed_images import run_to_label
 from terrain.checks.ground_steps import pairs_to_compare
-from terrain.checks.lost_details import (
-    HALF,
-    _details,
-    _stretches,
-    change_of_details,
-    lost_details,
-)
+from terrain.checks.lost_details import _stretches, lost_details
 from terrain.checks.terrain_views import TerrainViews
-from tests.terrain.test_still_image import down
-from tests.terrain.test_still_image import seen as shown
 
 SIZE, FROM_S, TO_S = (640, 480), 24.0, 40.0
 
@@ -75,23 +67,6 @@ def test_fog_and_a_lost_focus_are_found_from_their_first_to_their_last_image(fou
 )
 def test_other_terrain_light_gamma_and_blur_by_motion_are_no_loss(found, change):
     assert not found(change)
-
-
-def test_smoother_terrain_ahead_is_no_loss_of_details_and_fog_on_it_is(rng):
-    rough = cv2.GaussianBlur(rng.normal(0, 1, (2000, 2000)), (0, 0), 1.5) * 200
-    ahead = np.arange(2000) > 1200  # of the robot by 0.8 m and more, by columns
-    world, camera = 120 + np.where(ahead, 0.15, 1.0) * rough, down(65)
-    step = np.array([0.5, 0.0, 0.0])
-    before, after = shown(world, camera), shown(world, camera, step)
-    assert _details(after).mean() - _details(before).mean() < -HALF
-    assert change_of_details(camera, before, after, step) == pytest.approx(0.0, abs=0.3)
-    assert change_of_details(camera, before, fog(after), step) < -HALF
-
-
-def test_what_shows_no_common_terrain_has_no_change(camera, rng):
-    image = rng.integers(0, 256, (240, 320)).astype(np.uint8)
-    assert change_of_details(camera, image, image[:, ::2], np.zeros(3)) is None
-    assert change_of_details(camera, image, image, np.array([50.0, 0.0, 0.0])) is None
 
 
 def test_a_stretch_begins_with_a_loss_and_ends_before_the_details_are_back():

@@ -14,6 +14,7 @@ from terrain.classification.likeness import Likeness
 from terrain.errors import CameraError
 from terrain.region import RegionConfig
 from terrain.switch import SwitchConfig
+from terrain.terrain_details import DetailsWatch
 from terrain.watcher import TerrainWatcher
 from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
@@ -64,6 +65,22 @@ def test_a_view_that_stays_while_the_robot_moves_has_no_label(watch):
     labels = watched.watcher.image_labels
     assert [bool(one.label) for one in labels] == [True, True, False, False, False, True]
     assert labels[3].reason == "the image stays the same while the treads move"
+
+
+def test_images_that_lost_details_of_the_terrain_have_no_label(watch, monkeypatch):
+    given = {}
+
+    def has_lost(_, image, pose):
+        given[float(pose[0])] = image
+        return int(image.flat[0]) in {2, 3}
+
+    monkeypatch.setattr(DetailsWatch, "has_lost", has_lost)
+    watched = watch([DARK, BRIGHT, BRIGHT, BRIGHT, DARK])
+    drive(watched)
+    labels = watched.watcher.image_labels
+    assert [one.label for one in labels] == ["mud", "snow", "", "", "mud"]
+    assert labels[3].reason.startswith("the image lost details of the terrain: fog,")
+    assert np.ptp(list(given)) == pytest.approx(4 * 0.5)  # by the poses of the robot
 
 
 def test_a_region_of_which_a_corner_is_outside_the_image_has_a_label(watch):

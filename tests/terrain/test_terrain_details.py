@@ -1,0 +1,120 @@
+"""Images that lose details of the same terrain while a robot drives, and what is no loss."""
+
+import cv2
+import numpy as np
+import pytest
+
+from terrain.terrain_details import WIDTH_PX, DetailsWatch, change_of_details, details_of_tiles
+from tests.terrain.test_still_image import SIZE, down
+from tests.terrain.test_still_image import seen as shown
+
+LENGTH, STEP_M = 14, 0.13
+WAY_M = STEP_M * np.arange(LENGTH)
+FROM, TO = 5, 10  # images that are changed
+
+
+@pytest.fixture(scope="module")
+def rough():
+    """Greys (2000, 2000) of random terrain around the origin."""
+    noise = np.random.default_rng(4).normal(0, 1, (2000, 2000))
+    return 120 + 200 * cv2.GaussianBlur(noise, (0, 0), 1.5)
+
+
+def fog(image):
+    return 0.35 * image + 110
+
+
+def lost(world, change, poses_m=WAY_M, begin=FROM, end=TO):
+    """Whether each image of a drive lacks details, some of which are changed."""
+    camera, found = down(50), []
+    watch = DetailsWatch(camera)
+    for row, x in enumerate(poses_m):
+        pose = np.array([x, 0.0, 0.0])
+        image = shown(world, camera, pose, noise=2, seed=row).astype(np.float32)
+        image = change(image) if begin <= row < end else image
+        found.append(watch.has_lost(np.clip(image, 0, 255).astype(np.uint8), pose))
+    return found
+
+
+@pytest.mark.parametrize(
+    "change", [fog, lambda image: cv2.GaussianBlur(image, (0, 0), 2.5)], ids=["fog", "focus"]
+)
+def test_details_are_lost_from_the_first_to_the_last_image(rough, change):
+    assert lost(rough, change) == [FROM <= row < TO for row in range(LENGTH)]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda image: image,
+        lambda image: 0.4 * image,
+        lambda image: 255 * (image / 255) ** 0.7,
+        lambda image: cv2.blur(image, (5, 1)),
+    ],
+    ids=["as it is", "light", "gamma", "motion"],
+)
+def test_light_gamma_and_motion_are_no_loss(rough, change):
+    assert not any(lost(rough, change))
+
+
+@pytest.mark.parametrize("contrast", [0.02, 0.1, 0.3])
+def test_smooth_terrain_ahead_is_no_loss(rough, contrast):
+    ahead = np.arange(2000) > 1250  # of the robot by 1 m and more, by columns: snow, ice, concrete
+    world = 180 + np.where(ahead, contrast, 1.0) * (rough - 120)
+    assert not any(lost(world, fog, begin=LENGTH))
+
+
+def test_fog_that_comes_while_the_robot_stands_is_noticed(rough):
+    poses_m = np.minimum(WAY_M, STEP_M * (FROM - 2))
+    assert lost(rough, fog, poses_m) == [FROM <= row < TO for row in range(LENGTH)]
+
+
+def test_fog_that_comes_over_some_images_close_together_is_noticed(rough):
+    camera, watch, found = down(50), DetailsWatch(down(50)), []
+    for row in range(8):
+        pose = np.array([0.02 * row, 0.0, 0.0])
+        thick = min(row / 6, 1.0)
+        image = shown(rough, camera, pose).astype(np.float32)
+        image = (1 - thick) * image + thick * fog(image)
+        found.append(watch.has_lost(image.astype(np.uint8), pose))
+    assert found[-1]
+    assert not any(found[:3])
+
+
+def test_the_answer_holds_where_images_have_no_terrain_in_common(rough):
+    poses_m = WAY_M + np.where(np.arange(LENGTH) > FROM, 3.0, 0.0)
+    assert all(lost(rough, fog, poses_m, end=LENGTH)[FROM:])
+    poses_m = WAY_M + np.where(np.arange(LENGTH) >= FROM, 3.0, 0.0)
+    assert not any(lost(rough, fog, poses_m, end=LENGTH))  # it cannot be determined
+
+
+def test_large_images_are_compared_at_the_width_of_small_ones(rough):
+    camera, pose = down(50), np.zeros(3)
+    image = cv2.resize(shown(rough, camera), (4 * SIZE[0], 4 * SIZE[1]))
+    watch = DetailsWatch(camera)
+    assert not watch.has_lost(image, pose)
+    assert not watch.has_lost(shown(rough, camera), pose)
+    assert watch.has_lost(np.stack([fog(image)] * 3, axis=-1).astype(np.uint8), pose)
+    assert SIZE[0] == WIDTH_PX
+
+
+def test_smoother_terrain_ahead_is_no_change_and_fog_on_it_is(rough):
+    ahead = np.arange(2000) > 1200
+    world, camera = 120 + np.where(ahead, 0.15, 1.0) * (rough - 120), down(65)
+    step = np.array([0.5, 0.0, 0.0])
+    before, after = shown(world, camera), shown(world, camera, step)
+    assert details_of_tiles(after).mean() - details_of_tiles(before).mean() < -np.log(2)
+    assert change_of_details(camera, before, after, step) == pytest.approx(0.0, abs=0.3)
+    assert change_of_details(camera, before, fog(after), step) < -np.log(2)
+
+
+def test_more_light_on_noise_alone_cannot_be_compared(rng):
+    dark, bright = (rng.normal(grey, 1, (240, 320)) for grey in (30, 220))
+    assert change_of_details(down(50), dark, bright, np.zeros(3)) is None
+
+
+def test_what_shows_no_common_terrain_has_no_change(rng):
+    image = rng.integers(0, 256, (240, 320)).astype(np.uint8)
+    camera = down(50)
+    assert change_of_details(camera, image, image[:, ::2], np.zeros(3)) is None
+    assert change_of_details(camera, image, image, np.array([50.0, 0.0, 0.0])) is None
