@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from odometry.parameters import ParameterSet
 from odometry.run import UNKNOWN
 from terrain.classification.trained import Classifier
+from terrain.spelling import plain_name
 
 
 def name_notes(initial: str, classifier: Classifier | None, parameters: ParameterSet) -> list[str]:
@@ -29,15 +30,11 @@ def name_notes(initial: str, classifier: Classifier | None, parameters: Paramete
 
 
 def _meant(names: Iterable[str], known: Iterable[str]) -> str:
-    """Which names of the set differ from others by capitals, spaces or signs alone."""
-    by_letters = {_letters(name): name for name in known}
+    """Which names of the set are other spellings of some."""
+    known_as = {plain_name(name): name for name in known}
     found = [
-        f"{by_letters[_letters(name)]!r} there is {name!r} here: give both one name"
+        f"{known_as[plain_name(name)]!r} there is {name!r} here: give both one name"
         for name in names
-        if _letters(name) in by_letters
+        if plain_name(name) in known_as
     ]
     return f". {'. '.join(found)}" if found else ""
-
-
-def _letters(name: str) -> str:
-    return "".join(letter for letter in name.casefold() if letter.isalnum())

@@ -1,7 +1,7 @@
 """Folders of photographs that are not what they seem: classes that vanish, copies, one video."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import cv2
@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from terrain.classification.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_half
 from terrain.errors import PatchError
+from terrain.spelling import BY_SPELLING, alike_names
 
 OTHER_SUFFIXES = (".webp", ".tif", ".tiff", ".bmp", ".gif", ".heic", ".avif", ".ppm", ".pgm")
 
@@ -30,7 +31,7 @@ def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -
     ------
     PatchError
         If a folder holds images of another format alone, or photographs in folders within, or two
-        names differ by case or spaces alone.
+        names are spellings of one.
     """
     for folder in sorted(path for path in root.iterdir() if path.is_dir()):
         if folder.name in classes or folder.name.startswith("."):
@@ -43,17 +44,9 @@ def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -
                 )
     if alike := alike_names(classes):
         raise PatchError(
-            f"{root}: {' and '.join(map(repr, alike))} differ by case or spaces alone; "
-            "expected one folder for each terrain"
+            f"{root}: {' and '.join(map(repr, alike))} {BY_SPELLING}; expected one "
+            "folder for each terrain"
         )
-
-
-def alike_names(terrains: Iterable[str]) -> list[str]:
-    """Names that differ by case or spaces alone; none where all are different."""
-    names: dict[str, list[str]] = defaultdict(list)
-    for name in terrains:
-        names["".join(name.casefold().split())].append(name)
-    return next((alike for alike in names.values() if len(alike) > 1), [])
 
 
 def check_no_photo_in_two_classes(photos: Sequence[tuple[Path, str]]) -> None:

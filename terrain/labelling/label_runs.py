@@ -11,7 +11,6 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.run_terrains import NamedTerrain
 from terrain.camera import Camera
-from terrain.classification.photo_faults import alike_names
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections
 from terrain.labelling.driven_path import DrivenWay
@@ -20,6 +19,7 @@ from terrain.labelling.scale import LabelConfig, PatchScale, patch_scale
 from terrain.labelling.square_labels import LabelledSquare, labelled_squares
 from terrain.labelling.squares import SquareFinder, place_centres, places_of
 from terrain.main_job import run_odometry
+from terrain.spelling import BY_SPELLING, alike_names
 
 ASTRIDE_PLACES, NOT_NEEDED = "across the border of two places", "more than a place needs"
 REMOVED = "removed by hand"
@@ -91,7 +91,7 @@ def label_runs(
     Raises
     ------
     OdometryError
-        If a run has no images or camera, two names of terrains differ by case alone, nothing can be
+        If a run has no images or camera, two names are spellings of one terrain, nothing can be
         labelled, or a patch that was moved by
         hand is not among the squares any more.
 
@@ -108,8 +108,7 @@ def label_runs(
     config, corrections = config or LabelConfig(), corrections or Corrections()
     if alike := alike_names(sorted({name for of in given for name in of.terrains})):
         raise PatchError(
-            f"{' and '.join(map(repr, alike))} differ by case or spaces alone; expected one name "
-            "for each terrain"
+            f"{' and '.join(map(repr, alike))} {BY_SPELLING}; expected one name for each terrain"
         )
     finders = [square_finder(run, of, parameters) for run, of in zip(runs, given, strict=True)]
     scale = patch_scale(finders, config)

@@ -48,7 +48,7 @@ def test_other_folders_are_no_classes(tmp_path, write):
 def test_two_spellings_are_no_two_classes(tmp_path, write, other):
     write("sand/a.jpg")
     write(f"{other}/b.jpg")
-    with pytest.raises(PatchError, match="differ by case or spaces alone"):
+    with pytest.raises(PatchError, match="differ by capitals, spaces"):
         find_photos(tmp_path)
 
 
