@@ -22,6 +22,7 @@ AGREES_PX = 2.0
 # Features that stay, and their share in a pair of images of a frozen camera; what stays in others
 # is of the robot or far away
 STAYS_PX, MOST_STAYING = 0.5, 0.9
+STAYS = "the image stays the same though the treads move (the camera froze, or wheels spun)"
 BLOCKS = 8  # of the run, each left out once (jackknife)
 SURE = 0.975
 # What repeats over the whole run, such as errors of the lens, no stretch left out can show
@@ -80,7 +81,7 @@ def mount_from_motion(
         too few features that move as terrain does, or an interval too wide.
     """
     focus_px = float(np.mean(lens.focus_px))
-    tracks = _moving(tracks, focus_px)
+    followed, tracks = tracks, _moving(tracks, focus_px)
     known = np.zeros(6) if given is None else np.asarray(given, dtype=np.float64)
     flow, free = GroundFlow(tracks, known[:2], focus_px), np.ones(4, dtype=bool)
     found = _search(flow)
@@ -93,7 +94,7 @@ def mount_from_motion(
         _check_agreement(found)
     half = _half_interval(flow, found.values, free)
     vague = _vague(found.values, half)
-    notes = [SCALE_NOTE, LENS_NOTE]
+    notes = [SCALE_NOTE, LENS_NOTE, *_of_staying(followed, tracks)]
     if vague[2]:
         raise CalibrationError(
             f"the run does not determine the pitch: {np.degrees(found.values[2]):.1f} degrees, "
@@ -146,10 +147,18 @@ def _moving(tracks: Tracks, focus_px: float) -> Tracks:
     kept = np.flatnonzero(share < MOST_STAYING)
     if len(kept) < FEWEST_PAIRS:
         raise CalibrationError(
-            f"in {pairs - len(kept)} of {pairs} pairs the image stays the same though the treads "
-            "move: the camera is frozen, or the robot stood; the mount cannot be determined"
+            f"in {pairs - len(kept)} of {pairs} pairs {STAYS}. {len(kept)} pairs are left, "
+            f"expected at least {FEWEST_PAIRS}: the mount cannot be determined"
         )
     return tracks.of_pairs(kept)
+
+
+def _of_staying(followed: Tracks, moving: Tracks) -> list[str]:
+    """How many pairs were left out because the view stays, if any."""
+    pairs, left = len(followed.steps), len(moving.steps)
+    if left == pairs:
+        return []
+    return [f"in {pairs - left} of {pairs} pairs {STAYS}; the mount is that of the other {left}"]
 
 
 def _search(flow: GroundFlow) -> Solution:

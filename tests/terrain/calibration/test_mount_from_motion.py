@@ -112,6 +112,21 @@ def test_pairs_in_which_the_view_stays_do_not_count():
     found, used = mount_from_motion(made, LENS, np.array(MOUNT) * [1, 1, 0, 0, 0, 0])
     np.testing.assert_allclose(found.mount, MOUNT, atol=3e-3)
     assert len(used.steps) == 20
+    assert found.notes[-1].startswith(
+        "in 20 of 40 pairs the image stays the same though the treads"
+    )
+    assert found.notes[-1].endswith("the mount is that of the other 20")
+
+
+def test_where_too_few_others_are_left_their_number_is_stated():
+    rng = np.random.default_rng(8)
+    with pytest.raises(CalibrationError, match=r"in 15 of 30 .* 15 pairs are left, expected"):
+        mount_from_motion(stayed(tracks(MOUNT, rng, pairs=30), 15, rng), LENS, np.array(MOUNT))
+
+
+def test_nothing_is_said_of_frozen_images_where_there_are_none():
+    found, _ = mount_from_motion(tracks(MOUNT, np.random.default_rng(1)), LENS)
+    assert not any("stays the same" in note for note in found.notes)
 
 
 def test_the_intervals_are_said_to_hold_for_the_lens():
