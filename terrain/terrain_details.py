@@ -15,9 +15,11 @@ WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
 SIZES_PX = (0.7, 1.4, 2.8)  # details of an octave each, in such images
 TILE_PX, FEWEST_TILES = 32, 8
 LEAST_GREY, LEAST_DETAIL = 5.0, 0.5  # so that darkness and noise do not count
-DISTINCT = 1.0  # grey levels of details: with less a tile may show noise alone, and is not compared
-# Logarithm of details over light from an image to the next on the same terrain: six rocking, noisy
-# cameras had -0.22 to 0.20, one -0.30; fog of 0.4 of the contrast -0.5 to -2, mist -0.5 to -2.3
+DISTINCT = 1.0  # grey levels of details: tiles with less may show noise alone
+# Logarithm of details over light from an image to the next on the same terrain: seven rocking and
+# noisy cameras had -0.30 to 0.20, fog of 0.4 of the contrast -0.5 to -2, mist -0.5 to -2.3. Finest
+# over coarsest details: these cameras -0.33 to 0.29 (so do fog and another gamma), blur of 2 px of
+# 640 -0.3 to -0.9, blur by motion of 9 px -0.5 at the worst
 LOSS = float(np.log(0.6))
 REGAINED = 2 / 3  # of a loss, from an image to the next: the details are back
 APART_M = 0.12  # of travel between images that are compared, at least where none has lost details
@@ -25,8 +27,8 @@ APART_M = 0.12  # of travel between images that are compared, at least where non
 
 def change_of_details(
     camera: Camera, before: AnyArray, after: AnyArray, step: FloatArray
-) -> float | None:
-    """Logarithm of details over light in one grey image (h, w) over those in another.
+) -> FloatArray | None:
+    """How details in one grey image (h, w) have changed in another.
 
     Parameters
     ----------
@@ -37,8 +39,9 @@ def change_of_details(
 
     Returns
     -------
-    float or None
-        Median over tiles of terrain that both show, and of which one shows details; None where
+    (2,) or None
+        Logarithms of the changes of details over light, and of the finest over the coarsest ones:
+        medians over tiles of terrain that both show, and of which one shows details. None where
         these are too few.
     """
     if before.shape != after.shape:
@@ -46,20 +49,23 @@ def change_of_details(
     moved, known = carried_back(camera, after, step)
     (here, light), (there, other_light) = map(_details_and_light, (before, moved))
     known_tiles = tiles(known, TILE_PX).min(axis=1) > 0
-    compared = known_tiles & (np.maximum(here, there) > np.log(DISTINCT))
+    levels = np.maximum(here.mean(axis=0), there.mean(axis=0))
+    compared = known_tiles & (levels > np.log(DISTINCT))
     if np.count_nonzero(compared) < FEWEST_TILES:
         return None
-    return float(np.median((there - other_light - here + light)[compared]))
+    more = (there - here)[:, compared]
+    over_light = more.mean(axis=0) - (other_light - light)[compared]
+    return np.median([over_light, more[0] - more[-1]], axis=1)
 
 
 def details_of_tiles(image: AnyArray) -> FloatArray:
     """Logarithm of details over light (K,) of each tile of a grey image (h, w)."""
     details, light = _details_and_light(image)
-    return details - light
+    return np.asarray(details.mean(axis=0) - light)
 
 
 def _details_and_light(image: AnyArray) -> tuple[FloatArray, FloatArray]:
-    """Logarithms (K,) of the details of each tile, the mean of three octaves, and of its light."""
+    """Logarithms of the details of each tile (3, K), finest octave first, and of its light (K,)."""
     values = image.astype(np.float32)
     levels = [values, *(cv2.GaussianBlur(values, (0, 0), size) for size in SIZES_PX)]
     octaves = [
@@ -67,7 +73,7 @@ def _details_and_light(image: AnyArray) -> tuple[FloatArray, FloatArray]:
         for fine, coarse in pairwise(levels)
     ]
     light = np.log(tiles(values, TILE_PX).mean(axis=1) + LEAST_GREY)
-    return np.mean(octaves, axis=0), np.asarray(light)
+    return np.array(octaves), np.asarray(light)
 
 
 class DetailsWatch:
@@ -84,7 +90,7 @@ class DetailsWatch:
     def __init__(self, camera: Camera) -> None:
         self._camera = camera
         self._before: tuple[AnyArray, FloatArray] | None = None
-        self._loss = 0.0
+        self._lost: tuple[int, float] | None = None  # details or the finest of them, and how many
 
     def has_lost(self, image: AnyArray, pose: FloatArray) -> bool:
         """Whether an image (H, W) or (H, W, 3) lacks details that one before it showed.
@@ -99,13 +105,22 @@ class DetailsWatch:
         earlier, was = self._before
         step = se2.between(was, pose)
         change = change_of_details(self._camera, earlier, reduced, step)
-        begins = change is not None and not self._loss and change < LOSS
-        ends = change is not None and bool(self._loss) and change > -REGAINED * self._loss
-        if begins or ends:
-            self._loss = float(change or 0.0) if begins else 0.0
-        if change is None or begins or ends or float(np.hypot(*step[:2])) > APART_M:
+        lost = self._lost_after(change)
+        is_new = (lost is None) != (self._lost is None)
+        if change is None or is_new or float(np.hypot(*step[:2])) > APART_M:
             self._before = reduced, pose
-        return bool(self._loss)
+        self._lost = lost
+        return lost is not None
+
+    def _lost_after(self, change: FloatArray | None) -> tuple[int, float] | None:
+        """What is lost after a change: which of the two kinds, and its logarithm."""
+        if change is None:
+            return self._lost
+        if self._lost is None:
+            kind = int(change.argmin())
+            return (kind, float(change[kind])) if change[kind] < LOSS else None
+        kind, loss = self._lost
+        return None if change[kind] > -REGAINED * loss else self._lost
 
 
 def _reduced(image: AnyArray) -> AnyArray:

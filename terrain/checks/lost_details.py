@@ -101,5 +101,6 @@ class _DetailsOfRun:
             return None
         travel_m, turn_rad = (of[0] for of in robot_motion(self.run, stamps_s[None, None]))
         step = se2.exp(np.column_stack([travel_m, 0 * travel_m, turn_rad]))[0]
-        change = change_of_details(self.camera, before, after, step)
-        return None if change is None or abs(change) < HALF else (last, change)
+        changes = change_of_details(self.camera, before, after, step)
+        change = 0.0 if changes is None else float(changes[0])
+        return None if abs(change) < HALF else (last, change)

@@ -4,7 +4,13 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.terrain_details import WIDTH_PX, DetailsWatch, change_of_details, details_of_tiles
+from terrain.terrain_details import (
+    LOSS,
+    WIDTH_PX,
+    DetailsWatch,
+    change_of_details,
+    details_of_tiles,
+)
 from tests.terrain.test_still_image import SIZE, down
 from tests.terrain.test_still_image import seen as shown
 
@@ -24,6 +30,10 @@ def fog(image):
     return 0.35 * image + 110
 
 
+def blurred(size_px):
+    return lambda image: cv2.GaussianBlur(image, (0, 0), size_px)
+
+
 def lost(world, change, poses_m=WAY_M, begin=FROM, end=TO):
     """Whether each image of a drive lacks details, some of which are changed."""
     camera, found = down(50), []
@@ -36,11 +46,21 @@ def lost(world, change, poses_m=WAY_M, begin=FROM, end=TO):
     return found
 
 
-@pytest.mark.parametrize(
-    "change", [fog, lambda image: cv2.GaussianBlur(image, (0, 0), 2.5)], ids=["fog", "focus"]
-)
+@pytest.mark.parametrize("change", [fog, blurred(2.5)], ids=["fog", "another focus"])
 def test_details_are_lost_from_the_first_to_the_last_image(rough, change):
     assert lost(rough, change) == [FROM <= row < TO for row in range(LENGTH)]
+
+
+def test_a_little_blur_is_a_loss_of_the_finest_details(rng):
+    sizes_px = (1.0, 2.0, 4.0, 8.0)
+    noise = rng.normal(0, 1, (4, 2000, 2000))
+    parts = (cv2.GaussianBlur(n, (0, 0), of) * of for n, of in zip(noise, sizes_px, strict=True))
+    world = 120 + 100 * sum(parts)
+    found = lost(world, blurred(0.8))
+    assert found == [FROM <= row < TO for row in range(LENGTH)]
+    images = [shown(world, down(50)) for _ in range(2)]
+    change = change_of_details(down(50), images[0], blurred(0.8)(images[1]), np.zeros(3))
+    assert change[0] > LOSS > change[1]
 
 
 @pytest.mark.parametrize(
@@ -104,8 +124,8 @@ def test_smoother_terrain_ahead_is_no_change_and_fog_on_it_is(rough):
     step = np.array([0.5, 0.0, 0.0])
     before, after = shown(world, camera), shown(world, camera, step)
     assert details_of_tiles(after).mean() - details_of_tiles(before).mean() < -np.log(2)
-    assert change_of_details(camera, before, after, step) == pytest.approx(0.0, abs=0.3)
-    assert change_of_details(camera, before, fog(after), step) < -np.log(2)
+    assert change_of_details(camera, before, after, step) == pytest.approx([0, 0], abs=0.3)
+    assert change_of_details(camera, before, fog(after), step)[0] < -np.log(2)
 
 
 def test_more_light_on_noise_alone_cannot_be_compared(rng):
