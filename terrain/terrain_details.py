@@ -15,6 +15,7 @@ WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
 SIZES_PX = (0.7, 1.4, 2.8)  # details of an octave each, in such images
 TILE_PX, FEWEST_TILES = 32, 8
 LEAST_GREY, LEAST_DETAIL = 5.0, 0.5  # so that darkness and noise do not count
+LEAST_SHARE = 0.5  # of the tiles of common terrain: the median of few of them is uncertain
 DISTINCT = 1.0  # grey levels of details: tiles with less may show noise alone
 # Logarithm of details over light from an image to the next on the same terrain: seven rocking and
 # noisy cameras had -0.30 to 0.20, fog of 0.4 of the contrast -0.5 to -2, mist -0.5 to -2.3. Finest
@@ -51,11 +52,12 @@ def change_of_details(
     known_tiles = tiles(known, TILE_PX).min(axis=1) > 0
     levels = np.maximum(here.mean(axis=0), there.mean(axis=0))
     compared = known_tiles & (levels > np.log(DISTINCT))
-    if np.count_nonzero(compared) < FEWEST_TILES:
+    fewest = max(FEWEST_TILES, LEAST_SHARE * np.count_nonzero(known_tiles))
+    if np.count_nonzero(compared) < fewest:
         return None
     more = (there - here)[:, compared]
     over_light = more.mean(axis=0) - (other_light - light)[compared]
-    return np.median([over_light, more[0] - more[-1]], axis=1)
+    return np.asarray(np.median([over_light, more[0] - more[-1]], axis=1))
 
 
 def details_of_tiles(image: AnyArray) -> FloatArray:

@@ -133,6 +133,14 @@ def test_more_light_on_noise_alone_cannot_be_compared(rng):
     assert change_of_details(down(50), dark, bright, np.zeros(3)) is None
 
 
+def test_a_few_tiles_with_details_on_smooth_terrain_are_too_few(rng):
+    before, after = (rng.normal(120, 0.3, (240, 320)) for _ in range(2))
+    before[:64, :160] += rng.normal(0, 30, (64, 160))  # ten tiles: a shadow, an object
+    assert change_of_details(down(50), before, after, np.zeros(3)) is None
+    before[:, :256] += rng.normal(0, 30, (240, 256))
+    assert change_of_details(down(50), before, after, np.zeros(3)) is not None
+
+
 def test_what_shows_no_common_terrain_has_no_change(rng):
     image = rng.integers(0, 256, (240, 320)).astype(np.uint8)
     camera = down(50)
