@@ -68,9 +68,9 @@ def without_outliers(
 ) -> tuple[Apart, Apart, Outliers | None]:
     """Scenes to fit and to evaluate with all poses, and without those that are far off.
 
-    Both are the same, and there are no outliers, where that closes no gap on held-out data (of
-    jumps on all, as each is off by itself and few are in what is held out), or where nothing is
-    left of what is held out.
+    Both are the same, and there are no outliers, where that closes no gap on all runs (each is
+    off by itself, nothing is fitted, and few are in what is held out), or where nothing is left of
+    what is held out.
     """
     known_scenes, known = calibration
     scenes = apart(groups, numbers, config)
@@ -81,10 +81,7 @@ def without_outliers(
     left = apart((cut[0], cut[1]), numbers, config)
     if [len(of) for of in left] != [len(of) for of in scenes]:
         return scenes, scenes, None
-    judged = scenes[1], left[1]
-    if isinstance(outliers.named.effect, JumpingPoses):
-        judged = [*groups[0], *groups[1]], [*cut[0], *cut[1]]
-    if not closes(*judged, known.base, config):
+    if not closes([*groups[0], *groups[1]], [*cut[0], *cut[1]], known.base, config):
         return scenes, scenes, None
     return scenes, left, outliers
 

@@ -132,6 +132,22 @@ def test_poses_that_repeat_the_last_one_are_found(plain, known, rng, noise_m):
     assert len(found.named.effect.stamps_s[0]) > 0.7 * len(frozen_s)
 
 
+def test_poses_are_left_out_by_what_that_closes_on_all_runs(plain, known):
+    """The reference hangs where nothing is held out: each such pose is off by itself."""
+    held = np.arange(len(plain.pose_s))
+    for begin in np.searchsorted(plain.pose_s, [3.0, 34.0, 44.0, 54.0, 64.0]):
+        held[begin : begin + 8] = begin
+    run = plain.run
+    columns = {name: of if name == "t" else of[held] for name, of in run.pose.columns.items()}
+    stuck = replace(run, pose=replace(run.pose, columns=columns))
+    scene = dense_windows_of(stuck, CONFIG.horizon_s).numbered(0)
+    _, _, found = without_outliers(
+        ([stuck], []), ([scene], []), [np.array([1, 2])], ([plain], known), CONFIG
+    )
+    assert found is not None
+    assert found.named.effect.form == "frozen"
+
+
 def test_a_stretch_held_out_of_which_nothing_is_left_keeps_its_poses(plain, known):
     """The reference hangs all through the only stretch that is held out, and before and after."""
     pose_s = plain.pose_s
