@@ -1,5 +1,7 @@
 """Where the terrain of one image is in the next one, and images part by part."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 
@@ -17,10 +19,29 @@ def terrain_after(
 
     The step is x, y [m], yaw [rad] of the second robot frame in the first; NaN where nowhere.
     """
+    return _pixels_after(camera, width_px, step, _places(camera, width_px, pixels))
+
+
+def _places(camera: Camera, width_px: int, pixels: FloatArray) -> FloatArray:
+    """Terrain (N, 2) [m] that is at pixels (N, 2) of a reduced image."""
     times = camera.image_size[0] / width_px
-    places = camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
+    return camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
+
+
+def _pixels_after(
+    camera: Camera, width_px: int, step: FloatArray, places: FloatArray
+) -> FloatArray:
+    times = camera.image_size[0] / width_px
     there = camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
     return np.asarray((there + 0.5) / times - 0.5)
+
+
+@lru_cache(maxsize=4)  # of the images that a camera takes one after the other
+def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
+    """Terrain (rows, columns, 2) [m] at every NODE_PX-th pixel of a reduced image."""
+    rows, columns = np.arange(0, height + NODE_PX, NODE_PX), np.arange(0, width + NODE_PX, NODE_PX)
+    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2).astype(np.float64)
+    return _places(camera, width, nodes).reshape(len(rows), len(columns), 2)
 
 
 def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[AnyArray, BoolArray]:
@@ -29,9 +50,8 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     Both (h, w), the second False where terrain has left the image.
     """
     height, width = image.shape
-    rows, columns = np.arange(0, height + NODE_PX, NODE_PX), np.arange(0, width + NODE_PX, NODE_PX)
-    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2).astype(np.float64)
-    there = terrain_after(camera, width, step, nodes).reshape(len(rows), len(columns), 2)
+    places = _places_of_nodes(camera, height, width)
+    there = _pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
     at_v, at_u = np.mgrid[:height, :width].astype(np.float32) / NODE_PX
     u, v = (
         np.nan_to_num(

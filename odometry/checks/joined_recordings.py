@@ -44,8 +44,8 @@ def joined_recordings(evidence: Evidence) -> Iterator[Finding]:
 
 def without_seams(findings: Sequence[Finding]) -> list[Finding]:
     """The findings without those of such moments alone."""
-    seams = [s for finding in findings if finding.name == "recordings_joined"
-             for s in finding.spans_s]  # fmt: skip
+    joined = (finding for finding in findings if finding.name == "recordings_joined")
+    seams = [span for finding in joined for span in finding.spans_s]
     return [f for f in findings if f.name not in AT_SEAMS or not _all_at(f.spans_s, seams)]
 
 
