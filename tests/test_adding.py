@@ -70,6 +70,7 @@ def test_the_copy_is_as_the_style_asks(copy: Path) -> None:
     assert found.returncode == 0, found.stdout[-2000:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "section"), SECTIONS, ids=[name for name, _ in SECTIONS])
 def test_what_is_added_passes_its_tests(copy: Path, name: str, section: str) -> None:
     (command,) = re.findall(r"`(pytest .*?)`", section)

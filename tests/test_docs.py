@@ -23,6 +23,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_every_public_name_has_its_place(site: Path) -> None:
     for module, names in PUBLIC.items():
         page = (site / f"{module.replace('.', '/')}.html").read_text(encoding="utf-8")

@@ -24,6 +24,7 @@ def test_docstrings_of_no_module_go_untested() -> None:
     assert len(WITH_EXAMPLES) > 60
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WITH_EXAMPLES)
 def test_docstrings(name: str) -> None:
     result = doctest.testmod(importlib.import_module(name))

@@ -53,6 +53,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RunResult]:
     return run_demo(tmp_path_factory.mktemp("demo"))[0]
 
 
+@pytest.mark.slow
 def test_the_figures_of_the_demo(results: dict[str, RunResult]) -> None:
     """Those of the first page are those that the demo gives."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -73,6 +74,7 @@ def draw_without_data(out: Path) -> str:
     ).stdout
 
 
+@pytest.mark.slow
 def test_the_command_without_reference_data(tmp_path: Path) -> None:
     """It makes what it can, says what is missing, and gives the same bytes again."""
     assert "first_page.jpg needs" in draw_without_data(tmp_path)

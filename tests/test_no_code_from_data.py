@@ -72,6 +72,7 @@ def modes_of(call: ast.Call) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_nothing_imports_what_makes_code_of_bytes_or_starts_programs():
     found = []
     for kind in (ast.Import, ast.ImportFrom):

@@ -57,6 +57,7 @@ def assert_alike(kept: str, made: str) -> None:
         assert abs(float(number) - float(other)) <= most, (number, other, kept)
 
 
+@pytest.mark.slow
 @each_notebook
 def test_outputs_are_those_of_a_run(notebook: Path) -> None:
     kept, made = nbformat.read(notebook, as_version=4), executed(notebook)

@@ -25,6 +25,7 @@ def test_what_was_not_measured_has_no_row():
     ]
 
 
+@pytest.mark.slow
 def test_every_row_is_of_benchmarks_that_there_are():
     folder = Path(__file__).parent / "benchmarks"
     command = [sys.executable, "-m", "pytest", "-n", "0", "--collect-only", "-q", str(folder)]

@@ -147,6 +147,7 @@ def run_blocks(readme: Path) -> dict[str, object]:
     return names
 
 
+@pytest.mark.slow
 def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As it stands there, on a shorter run and fewer patches."""
     small = terrain.synthetic.SynthesisConfig(
@@ -163,6 +164,7 @@ def test_the_python_of_the_guides(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert switches == ["grass", "gravel"]
 
 
+@pytest.mark.slow
 def test_the_python_of_the_first_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On a short run and few patches."""
     small = terrain.SynthesisConfig(
@@ -174,6 +176,7 @@ def test_the_python_of_the_first_page(tmp_path: Path, monkeypatch: pytest.Monkey
     assert (tmp_path / "results/report.html").is_file()
 
 
+@pytest.mark.slow
 def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As data/README.md has it, on a shorter run."""
     short = partial(terrain.synthetic.SynthesisConfig, zone_length_m=1.0, patches_per_terrain=2)
@@ -225,6 +228,7 @@ def test_the_python_imports_public_names(readme: Path) -> None:
     assert private_imports("\n".join(blocks(readme, "python"))) == set()
 
 
+@pytest.mark.slow
 @needs_new_stubs
 def test_the_packages_and_the_python_of_the_guides_are_typed(tmp_path: Path) -> None:
     """By one run of mypy, as strictly as pyproject.toml says; each README is one program."""

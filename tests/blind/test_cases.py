@@ -46,6 +46,7 @@ def test_the_noise_level_changes_the_noise_of_poses_alone(tmp_path):
         assert error.std(axis=0) == pytest.approx([0.02, 0.02, np.deg2rad(0.46)], rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*FORMULA, *UNKNOWN, *NONE])
 def test_the_folders_have_the_shape_of_a_case(tmp_path, kind):
     case = make_case(kind, 0, tmp_path)

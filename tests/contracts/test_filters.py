@@ -194,6 +194,7 @@ pose = st.tuples(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(-10, 10))
 frames = st.tuples(st.floats(0, 5), st.tuples(st.floats(-5, 5), st.floats(-5, 5)), st.none() | pose)
 
 
+@pytest.mark.slow
 @each_filter
 @settings(max_examples=60)
 @given(st.lists(frames, min_size=1, max_size=15), st.sampled_from([1.0, 0.99]))

@@ -115,6 +115,7 @@ def with_poses(run):
     return Run(run.folder, run.robot, run.settings, run.odometry, imu=imu, pose=pose)
 
 
+@pytest.mark.slow
 def test_icrs_of_a_new_terrain_are_learned_apart_and_all_is_written(tmp_path):
     def without_yaw_rate(run):
         columns = {name: of for name, of in run.imu.columns.items() if name != "gyro_z"}

@@ -91,6 +91,7 @@ def of_steps(steps):
     return list(found.values())
 
 
+@pytest.mark.slow
 def test_feel_alone_is_the_source_of_run_and_what_it_never_felt_contradicts(model):
     run, _ = joined(drive("gravel", 60, **STRAIGHT), drive("grates", 61, **STRAIGHT))
     steps = fed(run, feel=model, terrain="boards")
@@ -101,6 +102,7 @@ def test_feel_alone_is_the_source_of_run_and_what_it_never_felt_contradicts(mode
     assert any(one.is_new for one in result.contradictions)
 
 
+@pytest.mark.slow
 def test_feel_alone_that_nobody_named_begins_as_unknown(model):
     """The first table of the set is another terrain."""
     run, _ = joined(drive("gravel", 60, **STRAIGHT), drive("snow", 61, **STRAIGHT))

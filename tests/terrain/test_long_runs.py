@@ -3,6 +3,7 @@
 import tracemalloc
 
 import numpy as np
+import pytest
 
 from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate, Innovation
@@ -71,6 +72,7 @@ def peak_bytes(make_run, rows):
     return peak
 
 
+@pytest.mark.slow
 def test_what_is_computed_of_a_long_run_takes_few_bytes_a_row(make_run):
     few, many = (peak_bytes(make_run, rows) for rows in (10_000, 30_000))
     assert (many - few) / 20_000 < MOST_BYTES - 40  # the table of odometry takes 40

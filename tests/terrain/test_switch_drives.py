@@ -34,6 +34,7 @@ def place_label_of(look, pose, travel_m):
     return PlaceLabel(look.label, look.step * STEP_S, travel_m, place, look.distance_ahead_m)
 
 
+@pytest.mark.slow
 @BOTH_RULES
 @pytest.mark.parametrize("rear", [False, True], ids=["front", "rear"])
 def test_every_switch_is_near_an_edge(needed, rear):
@@ -61,6 +62,7 @@ def test_every_edge_of_a_way_ahead_is_found(needed):
     assert max(late) <= NEAR_M
 
 
+@pytest.mark.slow
 def test_labels_right_nine_times_in_ten_hardly_flicker():
     """Independent errors, and three labels in ten are unknown; two in a row flickers on these."""
     by_evidence, by_rows, by_true_labels = 0, 0, 0

@@ -14,6 +14,7 @@ from terrain.results import write_results
 from tests.terrain.output_tables import TERRAIN, columns, strict
 
 
+@pytest.mark.slow
 def test_the_terrain_table_says_what_was_seen_and_where(across_out, across_run, world):
     _, table = columns(across_out / "terrain.csv")
     images = (across_run / "images.csv").read_text().split()[1:]

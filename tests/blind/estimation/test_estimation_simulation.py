@@ -42,6 +42,7 @@ def test_noise_has_the_size_that_was_asked():
     assert np.std(off) == pytest.approx(0.002 / np.sqrt(STEP_S), rel=0.05)
 
 
+@pytest.mark.slow
 def test_slip_grows_with_wheel_travel_alone():
     stand, ahead = np.zeros((2001, 2)), np.ones((2001, 2))
     ends = {}

@@ -41,6 +41,7 @@ def contents(folder):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", FAULTS)
 def test_a_fault_changes_its_own_file_alone(bases, tmp_path, key):
     base = make_case(FAULTS[key], bases, 1, tmp_path / "run")

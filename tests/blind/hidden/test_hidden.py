@@ -40,6 +40,7 @@ def hidden_in(kind, scene, drive, seed=0):
     return HIDDEN[kind].draw(rng(seed), scene)(rng(seed + 1), drive.clock)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", HIDDEN)
 def test_it_shows_in_both_runs_and_not_in_the_calibration(kind):
     drawn = draw_hidden_case(HIDDEN[kind], rng([0, *kind.encode()]))

@@ -102,6 +102,7 @@ def standard_errors_off(squared):
     return (means.mean() - 2) / (means.std(ddof=1) / np.sqrt(len(means)))
 
 
+@pytest.mark.slow
 def test_terrains_that_are_like_each_other():
     """Both within their 95 % bounds: NEES 1.999, NIS 1.983 of 1.972 to 2.028; 96 and 93 % of steps.
 
@@ -116,6 +117,7 @@ def test_terrains_that_are_like_each_other():
         assert abs(standard_errors_off(squared)) < 3
 
 
+@pytest.mark.slow
 def test_terrains_that_are_far_apart():
     """The means hold, 2.006 and 1.960; of the steps' NIS only 54 % lie inside, as said above."""
     nees, nis, right = filtered(FAR_APART, runs=50)

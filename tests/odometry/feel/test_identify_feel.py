@@ -19,6 +19,7 @@ def right_share(model, runs):
     return np.mean([(one.answers == one.run.terrain).mean() for one in found])
 
 
+@pytest.mark.slow
 def test_made_terrains_are_recognised_on_runs_held_out(model):
     assert model.names == tuple(sorted(NAMES))
     for length in ("window", "stretch", "run"):
@@ -27,6 +28,7 @@ def test_made_terrains_are_recognised_on_runs_held_out(model):
     assert right_share(model, [drive(name, 900 + i) for i, name in enumerate(NAMES)]) > 0.8
 
 
+@pytest.mark.slow
 def test_terrains_that_are_one_cannot_be_distinguished():
     runs = drives(["gravel"], count=12)
     named = [
@@ -42,6 +44,7 @@ def test_terrains_that_are_one_cannot_be_distinguished():
     assert felt.probabilities.max() < 0.9
 
 
+@pytest.mark.slow
 def test_speed_is_not_the_label():
     """Trained slowly, judged fast: what grows with speed is taken out."""
     slow = [
@@ -62,6 +65,7 @@ def test_speeds_that_were_never_driven_are_unknown(model):
     assert any("speeds that the model does not know" in line for line in sentences(felt))
 
 
+@pytest.mark.slow
 def test_terrains_that_were_driven_at_their_own_speed_are_said():
     runs = drives(["tiles"], speed=0.2) + drives(["gravel"], speed=0.8)
     notes = identify_feel(runs).report["notes"]
@@ -114,6 +118,7 @@ def test_a_faster_recording_will_do_and_a_slower_one_is_refused(model):
         follow_feel(drive("gravel", 811, rate_hz=50.0), model)
 
 
+@pytest.mark.slow
 def test_a_run_without_a_column_of_the_model_is_refused_and_a_model_without_it_serves(model):
     def without(columns):
         return columns | {"accel_x": np.full(len(columns["t"]), np.nan)}
@@ -156,6 +161,7 @@ def test_what_is_no_ground_for_a_model_is_refused():
         identify_feel([*drives(["gravel"]), named])
 
 
+@pytest.mark.slow
 def test_the_length_of_windows_is_chosen_of_those_given():
     model = identify_feel(drives(["tiles", "gravel"], count=3), window_s=(1.0, 2.0))
     assert model.design.window_s in (1.0, 2.0)

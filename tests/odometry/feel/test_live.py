@@ -82,6 +82,7 @@ def test_nothing_later_than_a_frame_changes_what_is_given_there(model):
     np.testing.assert_array_equal([of for _, of in at_once], [of for _, of in ahead])
 
 
+@pytest.mark.slow
 def test_a_real_recording_row_by_row_gives_what_it_gives_at_once(shared_data):
     """A minute of sandy loam; the model is of six other recordings."""
     names = ("ice_00", "ice_02", "snow_00", "snow_02", "sandy_loam_00", "sandy_loam_02")

@@ -51,12 +51,14 @@ def test_without_a_gap_nothing_is_named_or_unexplained(study):
     assert (found.names, found.unexplained) == ((), False)
 
 
+@pytest.mark.slow
 def test_jolts_are_a_gap_that_nothing_explains(study):
     found = study(1.0, 0.3, 60.0)
     assert (found.names, found.unexplained) == ((), True)
     assert wheel_scale(found).least < CONFIG.least_evidence
 
 
+@pytest.mark.slow
 def test_a_name_that_leaves_what_is_not_noise_is_dropped(study):
     """Wheels do slip, for sure; but it is not the only cause. A smooth function says how much."""
     found = study(0.85, 0.3, 160.0)
@@ -66,6 +68,7 @@ def test_a_name_that_leaves_what_is_not_noise_is_dropped(study):
     assert wheel_scale(found).least > CONFIG.least_evidence
 
 
+@pytest.mark.slow
 def test_a_name_that_closes_nearly_all_of_the_gap_stands_beside_jolts(study):
     found = study(0.6, 0.1, 160.0)
     assert found.names[0] == "wheel_scale"
@@ -73,6 +76,7 @@ def test_a_name_that_closes_nearly_all_of_the_gap_stands_beside_jolts(study):
     np.testing.assert_allclose(found.fitted.effects[0].values, 0.6, atol=0.03)
 
 
+@pytest.mark.slow
 def test_a_name_that_leaves_two_and_a_half_times_the_floor_is_not_the_only_cause(study):
     """It closes 0.78 of the excess, as did a constant slip in the place of one that grows."""
     found = study(0.6, 0.15, 160.0)

@@ -101,6 +101,7 @@ def test_a_gap_that_nothing_predicts_is_everywhere(make_scene, known):
     assert 0.05 < found.regions[0].excess_m < 0.2
 
 
+@pytest.mark.slow
 def test_no_region_without_a_gap(make_scene, known):
     found = [located((make_scene(seed),), known) for seed in range(50, 62)]
     assert sum(bool(one.regions) for one in found) <= 1

@@ -51,6 +51,7 @@ def less_turn(rough):
     return found_of(rough, turns=0.85)
 
 
+@pytest.mark.slow
 def test_a_robot_that_turns_less_is_no_model_as_it_is(less_turn):
     assert less_turn.verdict == "terrain"
     fitted, held_out = less_turn.turns
@@ -87,6 +88,7 @@ def test_the_words_and_the_file_say_by_what(less_turn):
     assert turns["holdout"]["share_closed"] > 0.9
 
 
+@pytest.mark.slow
 def test_a_gyroscope_at_fault_moves_no_position(rough):
     found = found_of(rough, gyroscope=1.15)
     assert found.verdict == "gyroscope_error"
@@ -101,6 +103,7 @@ def test_without_a_change_nothing_is_missing(rough):
     assert content_of(found)["turns"] is None
 
 
+@pytest.mark.slow
 def test_a_gyroscope_at_fault_as_measured_is_not_none(rough):
     """It was not on the runs held out: nothing is named, and nothing is "none"."""
     found = find_gap([rough(13, gyroscope=1.15)], [rough(11), rough(12)], [rough(14)])

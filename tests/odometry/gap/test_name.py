@@ -56,6 +56,7 @@ def names(result):
     return [added.effect.name for added in result.added]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "seed"), CASES)
 def test_the_verdict_is_right_and_the_held_out_excess_is_closed(studied, kind, seed):
     """In one test: two processes would study a case twice."""
@@ -95,6 +96,7 @@ def test_both_of_a_pair_are_named_and_nothing_freer_in_place_of_one(studied):
     assert result.holdout.share_closed > 0.9
 
 
+@pytest.mark.slow
 def test_a_clock_that_was_set_is_a_step_and_no_constant_delay_nor_a_drift(studied):
     """The size and the moment of each run are the true ones."""
     case, result = studied("clock_step", 50)
@@ -107,6 +109,7 @@ def test_a_clock_that_was_set_is_a_step_and_no_constant_delay_nor_a_drift(studie
     assert result.holdout.after.high < result.holdout.before.low
 
 
+@pytest.mark.slow
 def test_what_a_moved_base_hides_is_named_beside_the_first(studied):
     """Without a wheel scale the base would leave its calibration and close as much."""
     case, result = studied("wheel_scale+time_offset", 50)

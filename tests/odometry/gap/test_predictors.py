@@ -33,6 +33,7 @@ def made(rng):
     return [*scalars, *angles, *labels]
 
 
+@pytest.mark.slow
 def test_residuals_alike_within_pieces_are_not_discoveries():
     """Errors of a piece share a part: the usual distribution of the statistic is far off."""
     wrong, usual = 0, 0
@@ -48,6 +49,7 @@ def test_residuals_alike_within_pieces_are_not_discoveries():
     assert wrong <= 4  # of 30 at 5 %: more than 4 in 1.6 % of trials
 
 
+@pytest.mark.slow
 def test_effect_free_runs_seldom_show_a_discovery(make_scene, known):
     """Windows of simulated runs share poses, and fast ones have more noise."""
     shown = 0

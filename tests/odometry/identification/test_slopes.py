@@ -193,6 +193,7 @@ def assert_not_too_small_and_at_most_twice_too_large(total, freedom, rare):
     assert np.all((low / 2 < total) & (total < high)), total / freedom
 
 
+@pytest.mark.slow
 def test_joint_covariance_by_many_draws(many):
     errors, covariances = many
     factors = np.linalg.cholesky(covariances)

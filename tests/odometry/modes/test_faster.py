@@ -51,6 +51,7 @@ def followed(fastest_m_s, pose_until_s=np.inf):
     return follow_modes(replace(run, pose=pose), replace(mode_set, modes=modes))
 
 
+@pytest.mark.slow
 def test_motion_at_speeds_far_above_is_no_evidence():
     assert followed(0.8).probabilities[-1, 1] > 0.99
     np.testing.assert_allclose(followed(0.2).probabilities[100:, 1], 0.5, atol=0.01)

@@ -72,6 +72,7 @@ def test_feel_alone_is_a_hidden_markov_chain():
     assert 0.5 < found[5, 0] < found[4, 0] < after
 
 
+@pytest.mark.slow
 def test_windows_are_worth_what_they_were_on_runs_held_out(model):
     run = drive("grates", 901)
     one, most = (
@@ -138,5 +139,5 @@ def test_feel_names_what_motion_cannot_distinguish(model, alike_set, terrain):
     both = followed(run, alike_set, feel=model)
     late = both.motion.stamps_s > 8.0
     assert terrain not in set(both.answers(both.motion)[late])
-    assert (named_modes(both.felt, 0.9)[late] == terrain).mean() > 0.9
-    assert both.last_track is both.felt
+    assert (named_modes(both.with_feel, 0.9)[late] == terrain).mean() > 0.9
+    assert both.last_track is both.with_feel

@@ -51,6 +51,7 @@ def off(gains, name, run):
     return found - asked_twists(GAINS[name], treads, ROBOT.track_width)
 
 
+@pytest.mark.slow
 def test_twists_of_both_turns_are_found(modes):
     """Gains alone go together where turns are of one tightness. Forty poses of 1 cm over 4 s give
     a speed to 0.01 sqrt(12 / 40) / 4 = 0.0014 m/s, ten such windows of each turn to 0.0004; four
@@ -83,6 +84,7 @@ def test_noise_of_poses_and_gyroscope_is_found(modes):
     assert np.all(np.sqrt(modes.process_variance) < 0.01)  # nothing wanders
 
 
+@pytest.mark.slow
 def test_wandering_is_found():
     """Places and yaws that walk at random, by 0.04 m and 0.03 rad a root of a metre of travel.
 
@@ -99,6 +101,7 @@ def test_wandering_is_found():
     assert 0.027 < walked_rad < 0.04
 
 
+@pytest.mark.slow
 def test_what_gains_leave_open_is_as_large_as_their_errors():
     """Errors of twists over their variances: 1 on average over seeds, up to a factor."""
     ratios = []
@@ -113,6 +116,7 @@ def test_what_gains_leave_open_is_as_large_as_their_errors():
     assert np.all(np.abs(np.log(np.mean(ratios, axis=0))) < np.log(2.5))
 
 
+@pytest.mark.slow
 def test_a_gyroscope_gives_turns_better_than_poses_do():
     """Poses of 0.5 m and 0.4 rad; a gyroscope of 0.02 rad/s."""
     run, rng = drive(2, "left", size=6000), np.random.default_rng(8)
@@ -144,6 +148,7 @@ def test_errors_that_come_with_acceleration_are_found():
     assert identify_traction_modes([run]).variance_growth > 100 * (1 + calm.variance_growth)
 
 
+@pytest.mark.slow
 def test_what_short_runs_leave_open_is_noise():
     """With five times the driving gains are known five times better; nothing wanders."""
     short, long = (
@@ -206,6 +211,7 @@ def test_k_and_m_of_the_paper():
     np.testing.assert_array_equal(found.lag_s, 0.0)
 
 
+@pytest.mark.slow
 def test_modes_may_change_within_a_run():
     """Windows that straddle the change belong to neither."""
     run, other = drive(1, "none"), drive(2, "left")

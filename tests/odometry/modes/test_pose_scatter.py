@@ -50,6 +50,7 @@ def test_too_few_poses_determine_nothing():
     assert np.isnan(scatter_of(poses)).all()
 
 
+@pytest.mark.slow
 def test_noisier_poses_of_a_run_are_measured():
     """Modes expect 2 cm and 0.01 rad; the run has a half of it, then three times."""
     mode_set = traction_set()

@@ -74,6 +74,7 @@ def test_only_the_modes_near_the_leading_one_are_alike():
     np.testing.assert_array_equal(alike[499], [False, False, False])
 
 
+@pytest.mark.slow
 def test_modes_within_an_error_of_each_other_are_not_named_however_long_one_fits_better():
     """The truth is the first mode; the second is off by one deviation of what lasts."""
     rng = np.random.default_rng(4)

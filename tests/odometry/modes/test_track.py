@@ -66,6 +66,7 @@ def test_a_change_of_terrain_is_recognised_within_seconds(run):
     assert track.labels.tolist() == np.repeat(NAMES, CHANGE).tolist()
 
 
+@pytest.mark.slow
 def test_what_moves_in_a_gap_of_odometry_determines_nothing(run):
     """For 2 s on ice the speeds in force turn two thirds as much as the treads truly did."""
     signals = SET.modes.signals(run)
@@ -158,6 +159,7 @@ def test_the_same_input_gives_the_same_bits(run):
         assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
 
 
+@pytest.mark.slow
 def test_truth_and_labels_are_for_scoring_alone(run):
     """Every row of the truth names the wrong ground, and holds to the next."""
     truth = table({"t": np.array([5.0, 20.0]), "terrain": np.array(["tar", "ice"])})
@@ -256,6 +258,7 @@ def test_one_mode_is_a_kalman_filter():
     assert np.isnan(track.normalised_squared[[0, 10, 41]]).all()
 
 
+@pytest.mark.slow
 def test_errors_that_last_count_once(run, monkeypatch):
     """Measured each 0.02 s, one error for 0.2 s: a tenth of the log-odds. No mode is ever left.
 

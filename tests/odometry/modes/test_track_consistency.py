@@ -98,6 +98,7 @@ def filtered(factor=1.0, runs=RUNS):
     return nees, nis, float(right.mean())
 
 
+@pytest.mark.slow
 def test_nees_and_nis_lie_within_their_bounds():
     """NEES 2.031, NIS 1.984 of 1.950 to 2.051; with noise 25 % wrong they are 1.65 to 2.45.
 

@@ -20,6 +20,7 @@ from tests.odometry.positions_drives import ICR, drive, emptied
 CONFIG = ComparisonConfig(solver=SolverConfig(starts=1), draws=100)
 
 
+@pytest.mark.slow
 def test_compare_says_what_it_found_and_judges_longer_windows_under_more_noise():
     runs = [
         emptied(drive(seed, noise_m=0.3, gyroscope=True, name=name))
@@ -41,6 +42,7 @@ def test_compare_with_little_noise_keeps_the_horizon():
     assert found.config.horizons_m == (2.0,)
 
 
+@pytest.mark.slow
 def test_gap_finds_slower_wheels_from_positions_alone():
     """Both treads move 20 % less on the measured runs than on the calibration."""
     known = [emptied(drive(3, noise_m=0.01, gyroscope=True, duration_s=80.0, name="yard"))]

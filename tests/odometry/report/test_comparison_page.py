@@ -70,6 +70,7 @@ def written(compared, tmp_path_factory):
     return out, write_comparison_report(compared, out)
 
 
+@pytest.mark.slow
 def test_every_figure_is_there(written):
     out, files = written
     names = {file.relative_to(out).as_posix() for file in files}

@@ -197,6 +197,7 @@ def test_the_shape_of_what_is_unknown_by_hand(unknown_result):
     assert set(shapes) == {"v_x", "v_y"}
 
 
+@pytest.mark.slow
 def test_a_shape_of_every_smooth_function_is_drawn(unknown_result, known, tmp_path):
     candidates = general_candidates(unknown_result.measured_scenes, known.base, GapConfig())
     (tested,) = unknown_result.effects

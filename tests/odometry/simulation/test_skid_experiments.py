@@ -108,6 +108,7 @@ def test_a_run_in_memory_is_the_run_of_the_folder(husky, spiral, tmp_path):
                 np.testing.assert_allclose(ours[name], theirs[name], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_calibration_runs_know_their_mode_and_drive_as_alone(husky, rng):
     courses = calibration_courses(husky, 0.8, duration_s=12.0)
     modes = [

@@ -24,6 +24,7 @@ def contents(folder):
     return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
+@pytest.mark.slow
 def test_all_results_arrive_though_a_worker_is_killed(
     scheduler, four_runs, job_of, tmp_path, monkeypatch
 ):
@@ -53,6 +54,7 @@ def refused(jobs, address):
     return message
 
 
+@pytest.mark.slow
 def test_a_worker_that_cannot_do_the_jobs_is_reported_in_one_line(
     scheduler, curvy_run, job_of, tmp_path, monkeypatch
 ):

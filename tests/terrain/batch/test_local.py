@@ -7,6 +7,8 @@ from contextlib import suppress
 from multiprocessing import active_children
 from pathlib import Path
 
+import pytest
+
 from terrain.batch.batch import KILLED, local_outcomes, pool
 from terrain.batch.job import FAILED, REPLAYED
 from terrain.config import Config
@@ -34,6 +36,7 @@ def test_what_is_broken_off_ends_at_once():
     assert process.exitcode != 0
 
 
+@pytest.mark.slow
 def test_a_process_of_the_pool_ends_with_its_parent():
     """A parent that is killed can report nothing."""
     program = """

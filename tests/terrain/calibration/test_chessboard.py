@@ -31,6 +31,7 @@ def projected(poses, size=(320, 240)):
     return BoardViews(size, tuple(views), {})
 
 
+@pytest.mark.slow
 def test_the_lens_of_rendered_photographs(board_folder):
     seen = find_boards(photo_files(board_folder), CHESSBOARD)
     assert len(seen.views) + len(seen.without) == 10

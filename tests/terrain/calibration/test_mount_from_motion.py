@@ -50,6 +50,7 @@ def tracks(mount, rng, *, pairs=24, noise_px=0.0, turn=0.05, outliers=0.0):
     st.floats(0.25, 2.0), st.floats(-0.15, 0.15), st.floats(0.1, 1.3),
     st.sampled_from([0.0, np.pi - 0.1, 0.2]),
 )  # fmt: skip
+@pytest.mark.slow
 def test_exact_tracks_give_the_exact_mount(z, roll, pitch, yaw):
     """Cameras that look ahead, and one that looks back, low and high."""
     mount = np.array([0.2, 0.05, z, roll, pitch, yaw])

@@ -26,6 +26,7 @@ def causes(run, camera):
     return {finding.name: finding.cause for finding in findings}
 
 
+@pytest.mark.slow
 def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera):
     """Another sign of it below, without a gyroscope."""
     other = moved(camera, 4, lambda pitch: pitch - np.radians(8.0))
@@ -37,6 +38,7 @@ def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera):
     assert found["camera_lens"].startswith("The camera points")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("times", [0.5, 1.2])
 def test_a_wrong_focal_length_is_named_with_its_factor(drive, camera, times):
     cause = causes(drive, scaled(camera, times, times))["camera_lens"]
@@ -44,6 +46,7 @@ def test_a_wrong_focal_length_is_named_with_its_factor(drive, camera, times):
     assert float(re.findall(r"[0-9.]+", cause)[0]) == pytest.approx(1 / times, rel=0.02)
 
 
+@pytest.mark.slow
 def test_images_that_were_stretched_are_named(drive, camera):
     cause = causes(drive, scaled(camera, 1.0, 1.3))["camera_lens"]
     assert cause.startswith("The vertical focal length is 0.7")
@@ -83,6 +86,7 @@ def test_a_lens_far_off_is_named_where_nothing_agrees(drive, camera, monkeypatch
     assert "do not agree" in skipped
 
 
+@pytest.mark.slow
 def test_without_a_gyroscope_the_pitch_is_named_as_well(drive, camera):
     blind = replace(drive, imu=None, odometry=without_rates(drive.odometry))
     assert blind.yaw_rate is None

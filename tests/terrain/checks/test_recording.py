@@ -1,6 +1,7 @@
 """The check of a recording with its camera."""
 
 import numpy as np
+import pytest
 
 import odometry
 from odometry.checks.finding import Level
@@ -71,6 +72,7 @@ def test_one_row_of_images_or_odometry(faulty):
     check_run(faulty.folder)  # an answer, no traceback
 
 
+@pytest.mark.slow
 def test_the_model_is_looked_at(faulty, classifier, training_patches):
     assert faulty.found(classifier) == {}
     without = TerrainClassifier().fit(*training_patches)

@@ -93,6 +93,7 @@ def adapted(classifier, camera):
     return adapt(camera(4, exchanged), classifier)
 
 
+@pytest.mark.slow
 def test_where_all_ways_are_equal_the_new_photographs_alone_are_kept(classifier, camera, adapted):
     for found in (adapt(camera(4, same), classifier), adapted):
         assert found.scores == {ALONE: 1.0, MIXED: 1.0, OLD: 1.0}
@@ -181,6 +182,7 @@ def test_with_one_photograph_of_a_terrain_the_new_ones_alone_are_learned_from(cl
     assert found.training.patches.groups[0].endswith(".png")
 
 
+@pytest.mark.slow
 def test_terrains_without_new_photographs_are_said_to_be_forgotten(
     training_patches, camera, monkeypatch
 ):

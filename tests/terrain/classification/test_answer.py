@@ -63,6 +63,7 @@ def test_a_name_that_is_wrong_three_times_of_four_is_unknown_whatever_the_images
     assert answer.unless_improbable() == answer
 
 
+@pytest.mark.slow
 def test_a_classifier_asks_every_image_for_a_probable_name(model):
     images = photographs(2, photos=2)[0]
     assert not {answer.reason for answer in model.classify(images)} & {IMPROBABLE}

@@ -111,6 +111,7 @@ def test_copies_are_learned_from_with_their_photograph_and_never_judged(rng):
         assert codes_seen == [int(group >= 10) for group in seen]
 
 
+@pytest.mark.slow
 def test_training_is_repeatable_and_can_do_without_copies(tmp_path, rng):
     for name, low in {"dark": 0, "light": 110}.items():
         (tmp_path / name).mkdir()

@@ -212,6 +212,7 @@ def bluish(rng):
     return np.stack([grains(rng)] * 3, axis=2) // 2 + np.array([0, 0, 60], np.uint8)
 
 
+@pytest.mark.slow
 def test_colour_is_used_only_when_requested_and_there(rng, tmp_path):
     training = patches(rng, (reddish, bluish), photos=5)
     fresh = [bluish(rng) for _ in range(10)] + [reddish(rng) for _ in range(10)]

@@ -131,6 +131,7 @@ def test_terrain_that_a_model_knows_by_its_name_is_no_other_terrain():
     assert other_terrains([*TERRAINS]) == ()
 
 
+@pytest.mark.slow
 def test_a_model_of_two_terrains_is_less_sure_of_others_and_names_its_own_as_before(
     model, monkeypatch
 ):
@@ -147,6 +148,7 @@ def test_a_model_of_two_terrains_is_less_sure_of_others_and_names_its_own_as_bef
     assert names[0] == names[1]
 
 
+@pytest.mark.slow
 def test_altered_images_and_things_are_less_sure_than_photographs_held_out(model):
     images, labels, _ = photographs(2, photos=20)
     own = model.classify(images)

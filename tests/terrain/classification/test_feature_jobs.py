@@ -39,6 +39,7 @@ def cluster():
         yield scheduler, workers
 
 
+@pytest.mark.slow
 def test_processes_share_the_patches_and_give_the_same_bytes(images, monkeypatch):
     seen = []
     parallel = feature_jobs.Parallel
@@ -106,6 +107,7 @@ def test_workers_run_an_image_network(cluster, images, colour):
     assert far.tobytes() == features_of(shown, made_by).tobytes()
 
 
+@pytest.mark.slow
 def test_a_model_has_the_same_bytes_whoever_computed_it(cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(feature_jobs, "WORTH_A_PROCESS", 10)
     patches = tmp_path / "patches"

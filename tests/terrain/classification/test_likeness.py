@@ -114,6 +114,7 @@ def test_one_image_is_judged_by_all_of_its_patches(classifier, training_patches)
     assert classifier.likeness([corner]).rank > classifier.likeness([image]).rank
 
 
+@pytest.mark.slow
 def test_held_out_distances_have_an_even_rank_among_themselves():
     """Each patch against those of other photographs: what ranks of images are compared with."""
     images, codes, groups = photographs(1)

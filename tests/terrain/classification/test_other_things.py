@@ -75,6 +75,7 @@ def test_the_mean_of_several_patches_has_nearer_limits(learned):
     assert not learned.include(one_of_eight, 0)
 
 
+@pytest.mark.slow
 def test_terrain_that_resembles_things_loses_one_image_in_twenty_at_the_most(rng):
     rare = places(rng, 4 * AWAY, 100)
     terrain = np.concatenate([places(rng, 0 * AWAY, 20_000), rare])
@@ -94,6 +95,7 @@ def test_too_few_images_limit_nothing(rng):
     assert not found.include(1e6 * AWAY[None], 0)
 
 
+@pytest.mark.slow
 def test_a_thing_is_unknown_at_any_distance_and_it_is_said_why(model):
     near = copy(model)
     near.rejection_distance_ = np.inf

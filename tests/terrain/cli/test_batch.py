@@ -54,6 +54,7 @@ def replayed(folder):
     return [row["run"] for row in rows(folder, "times.csv") if row["state"] == "replayed"]
 
 
+@pytest.mark.slow
 def test_each_folder_is_byte_for_byte_what_run_makes(here):
     answer = call(batch, "a", "b", "--processes", "1", "--terrain", "clay")
     assert answer.exit_code == 0, answer.output
@@ -207,6 +208,7 @@ def test_an_interrupt_leaves_what_is_whole_and_goes_on_from_there(here, monkeypa
     assert read_manifest(here / "out").state == "finished"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_report")
 def test_a_killed_batch_goes_on_to_the_same_bytes(here):
     """SIGKILL of the batch at some moment: what was whole stays, and nothing is done twice."""

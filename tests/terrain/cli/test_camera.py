@@ -98,6 +98,7 @@ def test_marks_that_contradict_each_other_are_not_written(run):
     assert (run / "run.toml").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_the_run_itself(verb, run, world, tmp_path):
     text = (run / "run.toml").read_text()
     mount = str(world.camera["mount"])
@@ -115,6 +116,7 @@ def test_the_run_itself(verb, run, world, tmp_path):
     assert before["camera"]["mount"][4] == 0.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [(), ("--write",)])
 def test_a_height_that_is_not_determined_leaves_no_file(verb, run, tmp_path, monkeypatch, options):
     found = mount_sources.mount_of_motion

@@ -82,6 +82,7 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_options_reach_the_comparison(runs, tmp_path):
     """Runs without a named ground, training runs, horizons, seed."""
     plain = [make(tmp_path / f"plain_{i}", 5 + i, terrain=None) for i in range(2)]

@@ -70,6 +70,7 @@ def written(calls, tmp_path_factory):
     return write
 
 
+@pytest.mark.slow
 def test_files_are_the_same_in_another_environment(written):
     usual, unusual = written(USUAL), written(UNUSUAL)
     assert unusual.keys() == usual.keys()

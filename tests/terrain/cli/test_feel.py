@@ -38,6 +38,7 @@ def invoke(*arguments):
     return CliRunner().invoke(feel, list(map(str, arguments)))
 
 
+@pytest.mark.slow
 def test_what_was_found_with_runs_held_out_is_printed(model):
     answer, file = model
     (row,) = [line for line in answer.stdout.splitlines() if line.startswith("  stretch of 10 s")]

@@ -76,6 +76,7 @@ def assert_refused(answer, tmp_path, *words, code=1):
     assert not (tmp_path / "out" / "gap.json").exists()
 
 
+@pytest.mark.slow
 def test_the_answer_is_printed_and_written(command, case, tmp_path):
     code, output, messages = command()
     assert code == 0, messages
@@ -110,6 +111,7 @@ def test_the_answer_is_printed_and_written(command, case, tmp_path):
     assert added.by_name["offset"] == pytest.approx(true_s, abs=0.02)
 
 
+@pytest.mark.slow
 def test_what_check_warns_of_stands_beside_the_answer(command, case, tmp_path):
     lost = shutil.copytree(case.measured, tmp_path / "lost")
     header, *rows = (lost / "odometry.csv").read_text().splitlines(keepends=True)
@@ -133,6 +135,7 @@ def test_what_check_warns_of_stands_beside_the_answer(command, case, tmp_path):
     assert ("lost", "stuck_encoder") in warned
 
 
+@pytest.mark.slow
 def test_a_given_set_is_taken_as_it_is_and_without_holdout_stretches_are_held_back(
     monkeypatch, capsys, case, tmp_path
 ):

@@ -169,6 +169,7 @@ def test_another_error_while_writing_keeps_its_own_message(tmp_path):
         raise missing
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_no_message(tmp_path):
     """What reads the output has ended before the first line."""
     reading, writing = os.pipe()

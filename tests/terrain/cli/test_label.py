@@ -72,6 +72,7 @@ def elsewhere(across_run, tmp_path):
     return copy
 
 
+@pytest.mark.slow
 def test_train_reads_the_folder_by_place(across_run, elsewhere, tmp_path):
     folder = tmp_path / "patches"
     runs = [across_run, elsewhere]
@@ -101,6 +102,7 @@ def test_the_same_input_gives_the_same_bytes(first, again):
             assert (other / file.relative_to(folder)).read_bytes() == file.read_bytes()
 
 
+@pytest.mark.slow
 def test_files_that_were_moved_or_removed_stay_so(again):
     folder, label_again = again
     rows = rows_of(folder)

@@ -20,6 +20,7 @@ def content_of(out):
     return json.loads((out / "result.json").read_text())
 
 
+@pytest.mark.slow
 def test_with_a_model_the_terrain_is_seen(across_run, model_file, tmp_path):
     out = tmp_path / "out"
     answer = invoke(across_run, "--out", out, "--model", model_file, "--terrain", "gravel")

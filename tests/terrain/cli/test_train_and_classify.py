@@ -47,6 +47,7 @@ def trained_by(photos, model, processes):
     return CliRunner().invoke(train, [str(photos), "--out", str(model), *options])
 
 
+@pytest.mark.slow
 def test_two_processes_train_the_same_file(trained, photos, tmp_path):
     assert trained_by(photos, tmp_path / "ground.model", 2).exit_code == 0
     get_reusable_executor().shutdown(wait=True)

@@ -175,5 +175,5 @@ def test_two_spellings_of_a_terrain_are_refused(run, told_spans):
     given = told_spans(run)
     *others, last, nothing = given.names
     names = (*others, last.capitalize(), nothing)
-    with pytest.raises(PatchError, match="'Gravel' and 'gravel' differ by case"):
+    with pytest.raises(PatchError, match="'Gravel' and 'gravel' differ by capitals"):
         label_runs([run], [replace(given, names=names)], SMALL)

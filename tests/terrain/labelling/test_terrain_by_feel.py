@@ -16,6 +16,7 @@ def model():
     return model_of_three()
 
 
+@pytest.mark.slow
 def test_labels_are_of_the_moment(model):
     run, begin_s = joined(drive("gravel", 70), drive("snow", 71))
     given = given_by_feel(run, model)

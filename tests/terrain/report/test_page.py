@@ -45,6 +45,7 @@ def test_the_page_loads_and_runs_nothing(full):
     assert "://" not in text
 
 
+@pytest.mark.slow
 def test_the_same_result_gives_the_same_bytes(seen, blind, full, tmp_path):
     out, written = full
     again = write_report(seen, tmp_path, {"without <vision>": blind})
