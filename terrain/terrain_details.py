@@ -48,11 +48,13 @@ def change_of_details(
     if before.shape != after.shape:
         return None
     moved, known = carried_back(camera, after, step)
+    common = tiles(known, TILE_PX).min(axis=1) > 0
+    if np.count_nonzero(common) < FEWEST_TILES:
+        return None
     (here, light), (there, other_light) = map(_details_and_light, (before, moved))
-    known_tiles = tiles(known, TILE_PX).min(axis=1) > 0
     levels = np.maximum(here.mean(axis=0), there.mean(axis=0))
-    compared = known_tiles & (levels > np.log(DISTINCT))
-    fewest = max(FEWEST_TILES, LEAST_SHARE * np.count_nonzero(known_tiles))
+    compared = common & (levels > np.log(DISTINCT))
+    fewest = max(FEWEST_TILES, LEAST_SHARE * np.count_nonzero(common))
     if np.count_nonzero(compared) < fewest:
         return None
     more = (there - here)[:, compared]

@@ -20,7 +20,7 @@ CATALOGUE: dict[str, str] = {
     "setting_name": "a key of run.toml that is not read, with a name like a known one",
     "sensor_place": "[sensors] pose in mm",
     "terrain_names": "two spellings of one terrain",
-    "recordings_joined": "two recordings in one file",
+    "recordings_joined": "poses that begin anew at rest: two files joined, or a carried robot",
     "one_motion": "a drive that only goes straight, spins, or is one circle",
     "sensors_disagree": "sensors differ, and the cause cannot be determined",
     # Treads

@@ -29,8 +29,7 @@ MOST_PARTS = 6  # the longest ones are compared
 # one side that loses samples seems to have another scale.
 TRIED_ALONE = frozenset(
     {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
-    | {"tread_late"}
-    | {"treads_unequal", "tread_scale_changed", "dropped_speeds"}
+    | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
 )
 
 Found = Callable[[Evidence], Iterator[Finding]]

@@ -10,6 +10,12 @@ POSES = frozenset(
 )
 YAW = frozenset({"yaw_backwards", "yaw_off_by_90", "yaw_offset", "yaw_unrelated"})
 TREADS = frozenset({"slip", "slip_in_turns", "scale", "tread_unit", "position_unit", "track_width"})
+OF_OTHER_TIMES = (  # speeds that are not of their stamps
+    TREADS
+    | POSES
+    | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
+    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor"}
+)
 
 # Cause: what follows from it.
 CONSEQUENCES: dict[str, frozenset[str]] = {
@@ -82,14 +88,8 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"one_motion"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
     "uneven_stamps": frozenset({"odometry_gap"}),
-    "tread_late": TREADS
-    | POSES
-    | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
-    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor", "yaw_jumps"},
-    "treads_held": TREADS
-    | POSES
-    | {"treads_late", "treads_are_commands", "gyroscope_late", "treads_unequal", "tread_offset"}
-    | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor"},
+    "tread_late": OF_OTHER_TIMES | {"yaw_jumps"},
+    "treads_held": OF_OTHER_TIMES,
     "coarse_yaw": YAW
     | POSES
     | {"yaw_jumps", "yaw_bent", "poses_unrelated", "gyroscope_unit", "interpolated_poses"}

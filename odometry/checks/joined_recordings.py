@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence import Evidence
 from odometry.checks.finding import Finding, Level, counted
+from odometry.geometry.angles import wrap
 
 FARTHER, LEAST_M = 3.0, 1.0  # than the treads travel meanwhile, and at least
 NOISE = 8.0  # standard deviations of the positions
@@ -72,7 +73,7 @@ def _steps_at_rest(evidence: Evidence) -> Iterator[tuple[float, float]]:
             np.median(positions[first : first + BESIDE], axis=0)
             for first in (row - BESIDE + 1, row + 1)
         )
-        turn = np.angle(np.exp(1j * (pose["yaw"][row + 1] - pose["yaw"][row])))
+        turn = wrap(pose["yaw"][row + 1] - pose["yaw"][row])
         if np.hypot(*(after - before)) < STAYS * far_m[row] or abs(turn) < LEAST_TURN_RAD:
             continue
         if _stands(evidence, stamps_s[row : row + 2]):

@@ -154,7 +154,7 @@ def _moving(tracks: Tracks, focus_px: float) -> Tracks:
 
 
 def _of_staying(followed: Tracks, moving: Tracks) -> list[str]:
-    """How many pairs were left out because the view stays, if any."""
+    """How many pairs were left out because the image stays the same, if any."""
     pairs, left = len(followed.steps), len(moving.steps)
     if left == pairs:
         return []

@@ -77,8 +77,8 @@ class Responses:
         rows = np.empty((len(omega), len(self._scene), self._scene.rows_per_window))
         self._off_first(self._seen.of(moved), rows[..., : 3 * steps])
         if self._scene.reported_turns is not None:
-            felt = self._delayed.of(_sum(omega * self._by_rate, np.empty_like(omega)))
-            np.subtract(felt[..., :-1], felt[..., 1:], out=rows[..., 3 * steps :])
+            reported = self._delayed.of(_sum(omega * self._by_rate, np.empty_like(omega)))
+            np.subtract(reported[..., :-1], reported[..., 1:], out=rows[..., 3 * steps :])
         return rows
 
     def _off_first(self, moved: FloatArray, rows: FloatArray) -> None:
