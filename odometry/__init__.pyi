@@ -1,5 +1,5 @@
 from .bags.messages import BagMessage, bag_messages
-from .checks.finding import CheckReport, Finding
+from .checks.findings.finding import CheckReport, Finding
 from .checks.recording import check_recording
 from .comparison.compare import compare
 from .dead_reckoning import dead_reckon, dead_reckon_in_space

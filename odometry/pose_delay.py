@@ -6,9 +6,16 @@ are up to 0.2 s early against the gyroscope and at most 0.03 s late.
 
 from dataclasses import replace
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.lag import Lag
-from odometry.checks.timing import CERTAIN, TOGETHER, found_in, lags_of, pose_period_s, timing
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag
+from odometry.checks.stamps.timing import (
+    CERTAIN,
+    TOGETHER,
+    found_in,
+    lags_of,
+    pose_period_s,
+    timing,
+)
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run
@@ -29,7 +36,7 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
     config : IcrEkfConfig
         `pose_delay_s` is the delay of the stamps. With 0, and with `watch_sensors`, it
         is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
-        yaw rate with that of the poses (`odometry.checks.timing`), and used only where that
+        yaw rate with that of the poses (`odometry.checks.stamps.timing`), and used only where that
         is certain.
 
     Returns

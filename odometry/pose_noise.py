@@ -4,8 +4,8 @@ import math
 from dataclasses import replace
 
 from odometry.arrays import FloatArray
-from odometry.checks.evidence import Evidence
-from odometry.checks.position_noise import position_noise_m
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.poses.position_noise import position_noise_m
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.run import Run
 from terrain.errors import PatchError
 from terrain.run_options import RunOptions

@@ -10,7 +10,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.blocks import blocks_of
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.estimates import Replay
 from odometry.estimation.estimate import STATE_NAMES
 from odometry.estimation.kept_estimates import EVERY

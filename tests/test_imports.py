@@ -95,6 +95,16 @@ def test_rooms_of_the_gap_import_in_the_order_of_the_story():
             assert not {target for target in targets if target.rpartition(".")[0] in later}, name
 
 
+def test_rooms_of_the_checks_import_in_one_order():
+    order = ("findings", "evidence", "treads", "imu", "units", "copies", "stamps", "poses")
+    order += ("settings", "unexplained")
+    for name, targets in graph().items():
+        room = name.removeprefix("odometry.checks.").split(".")[0]
+        if name.startswith("odometry.checks.") and room in order:
+            later = {f"odometry.checks.{other}" for other in order[order.index(room) + 1 :]}
+            assert not {target for target in targets if target.rpartition(".")[0] in later}, name
+
+
 def test_only_the_command_line_imports_click_and_nobody_else_exits():
     for name, file in FILES.items():
         if not name.startswith("terrain.cli"):

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from odometry.checks.catalogue import CATALOGUE
-from odometry.checks.disagreement import against_slip, lasting_disagreements, scales_apart
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level, disagreement
-from odometry.checks.strange_parts import strange_part
-from odometry.checks.undo import Mend, between, in_turn
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.catalogue import CATALOGUE
+from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.findings.undo import Mend, between, in_turn
+from odometry.checks.imu.gyroscope_by_poses import scales_apart
+from odometry.checks.unexplained.disagreement import against_slip, lasting_disagreements
+from odometry.checks.unexplained.strange_parts import strange_part
 
 MOMENTS = frozenset({"pose_jumps", "yaw_jumps", "recordings_joined"})  # are undone by a cut
 # Their time is left out: what then differs was not of the treads in it.

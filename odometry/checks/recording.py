@@ -7,53 +7,50 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.checks.attitude import attitude
-from odometry.checks.blocked_turns import blocked_turns
-from odometry.checks.coarse_yaw import coarse_yaw
-from odometry.checks.compass_error import bent
-from odometry.checks.computed_poses import computed_poses
 from odometry.checks.confirmed import alone, confirmed
-from odometry.checks.consequences import without_consequences
-from odometry.checks.copied_columns import copied_columns
-from odometry.checks.course import course
-from odometry.checks.disagreement import (
-    agreement,
-    gyroscope_scale,
-    sensors_disagree,
-    yaw_against_course,
-)
-from odometry.checks.evidence import Evidence
-from odometry.checks.explained_lags import explained_lags
-from odometry.checks.finding import CheckReport, Finding, Level, in_order
-from odometry.checks.gaps import gaps
-from odometry.checks.gyroscope import gyroscope
-from odometry.checks.held_treads import held_treads
-from odometry.checks.interleaved import interleaved
-from odometry.checks.joined_recordings import joined_recordings, without_seams
-from odometry.checks.late_positions import late_positions, position_lag
-from odometry.checks.one_column_late import one_column_late
-from odometry.checks.one_encoder import one_encoder
-from odometry.checks.one_motion import one_motion
-from odometry.checks.pose_values import pose_values
-from odometry.checks.poses import pose_outages, poses
-from odometry.checks.position_axes import position_axes
-from odometry.checks.proportion import proportion
-from odometry.checks.scale_change import scale_change
-from odometry.checks.settings import columns, settings
-from odometry.checks.settings_names import robot_sizes, settings_names
-from odometry.checks.sides import sides
-from odometry.checks.smoothed_poses import smoothed_poses
-from odometry.checks.stamp_pace import stamp_pace
-from odometry.checks.stamps import stamps, unreadable_stamps
-from odometry.checks.stuck_encoders import stuck_encoders
-from odometry.checks.tread_motion import tread_motion
-from odometry.checks.tread_samples import tread_samples
-from odometry.checks.treads import equal_treads, treads
-from odometry.checks.turning import turning
-from odometry.checks.units import units
-from odometry.checks.unreadable import no_run_folder, unreadable
-from odometry.checks.unsigned import unsigned
-from odometry.checks.yaw_drift import yaw_drifts
+from odometry.checks.copies.computed_poses import computed_poses
+from odometry.checks.copies.copied_columns import copied_columns
+from odometry.checks.copies.one_encoder import one_encoder
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.consequences import without_consequences
+from odometry.checks.findings.finding import CheckReport, Finding, Level, in_order
+from odometry.checks.findings.unreadable import no_run_folder, unreadable
+from odometry.checks.imu.attitude import attitude
+from odometry.checks.imu.gyroscope import gyroscope
+from odometry.checks.imu.gyroscope_by_poses import gyroscope_scale
+from odometry.checks.imu.turning import turning
+from odometry.checks.poses.coarse_yaw import coarse_yaw
+from odometry.checks.poses.compass_error import bent
+from odometry.checks.poses.course import course
+from odometry.checks.poses.pose_values import pose_values
+from odometry.checks.poses.poses import pose_outages, poses
+from odometry.checks.poses.position_axes import position_axes
+from odometry.checks.poses.smoothed_poses import smoothed_poses
+from odometry.checks.poses.yaw_drift import yaw_drifts
+from odometry.checks.settings.settings import columns, settings
+from odometry.checks.settings.settings_names import robot_sizes, settings_names
+from odometry.checks.stamps.explained_lags import explained_lags
+from odometry.checks.stamps.gaps import gaps
+from odometry.checks.stamps.held_treads import held_treads
+from odometry.checks.stamps.interleaved import interleaved
+from odometry.checks.stamps.joined_recordings import joined_recordings, without_seams
+from odometry.checks.stamps.late_positions import late_positions, position_lag
+from odometry.checks.stamps.one_column_late import one_column_late
+from odometry.checks.stamps.stamp_pace import stamp_pace
+from odometry.checks.stamps.stamps import stamps, unreadable_stamps
+from odometry.checks.treads.blocked_turns import blocked_turns
+from odometry.checks.treads.one_motion import one_motion
+from odometry.checks.treads.proportion import proportion
+from odometry.checks.treads.scale_change import scale_change
+from odometry.checks.treads.sides import sides
+from odometry.checks.treads.stuck_encoders import stuck_encoders
+from odometry.checks.treads.tread_motion import tread_motion
+from odometry.checks.treads.tread_samples import tread_samples
+from odometry.checks.treads.treads import equal_treads, treads
+from odometry.checks.treads.unsigned import unsigned
+from odometry.checks.unexplained.disagreement import sensors_disagree
+from odometry.checks.unexplained.unrelated_turns import agreement, yaw_against_course
+from odometry.checks.units.units import units
 from odometry.errors import RunFolderError
 from odometry.run import Run
 

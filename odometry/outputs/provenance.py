@@ -10,7 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.io.csv_columns import unquoted_text
 from odometry.io.run_folder import FILES
 from odometry.outputs.manifest import PROGRAM

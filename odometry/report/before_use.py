@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.report.html import Listing, Section
 
 TITLE = "Before you use these numbers"

@@ -8,9 +8,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from odometry.arrays import FloatArray
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import CheckReport
-from odometry.checks.motion import Motion
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.motion import Motion
+from odometry.checks.findings.finding import CheckReport
 from odometry.report.figure import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS, LineStyle
 from odometry.report.labels import HALO
 from odometry.windows.spans import within

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place
 from odometry.comparison.training_horizons import horizon_sentence

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.feel.felt import SILENT
 from odometry.feel.files import sentences
 from odometry.feel.follow import Felt

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from odometry.checks.warned import faults_words
+from odometry.checks.findings.warned import faults_words
 from odometry.effects.base import Effect
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added

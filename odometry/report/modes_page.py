@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.modes.detection import confusion
 from odometry.modes.followed import BOUND, Followed
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.io.csv_table import write_csv_table
 from odometry.io.structured import read_json
 from odometry.learned_parameters import MergedTerrain, learned_by_runs, merged_terrain

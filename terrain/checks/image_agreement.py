@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray
-from odometry.checks.cleaned_recording import CleanedRecording
+from odometry.checks.evidence.cleaned_recording import CleanedRecording
 from odometry.run import Run
 from terrain.checks.ground_steps import GroundSteps
 

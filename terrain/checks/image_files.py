@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, IntArray
-from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.run import Run
 from terrain.checks.image_values import FLAT, grey_of
 from terrain.image_size import PIXELS, is_whole, stated_size
@@ -184,7 +184,7 @@ def outside_of_odometry(run: Run) -> Iterator[Finding]:
     first_s, last_s = float(run.odometry.stamps_s[0]), float(run.odometry.stamps_s[-1])
     before, after = int(np.sum(stamps_s < first_s)), int(np.sum(stamps_s > last_s))
     share = (before + after) / len(stamps_s)
-    if FEW_OUTSIDE < share <= 0.5:  # above, odometry.checks.stamps reports it
+    if FEW_OUTSIDE < share <= 0.5:  # above, odometry.checks.stamps.stamps reports it
         yield Finding(
             "images_outside",
             Level.NOTE,

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.run import Run
 
 # By the treads, without an image: terrain that is shorter than 2 m is rarely listed in any case.

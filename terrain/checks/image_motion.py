@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps

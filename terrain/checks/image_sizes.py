@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from terrain.camera import Camera
 from terrain.checks.image_files import SampledImage
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, IntArray
-from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.geometry import se2
 from odometry.run import Run
 from terrain.camera import Camera

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.checks.finding import Finding, Level, counted
+from odometry.checks.findings.finding import Finding, Level, counted
 from terrain.images import to_grey
 
 MOST = 0.5  # share of the images of which something must hold

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.tracks import Tracks
 from terrain.camera import Camera

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from odometry.geometry import se2
 from odometry.run import Run
 from terrain.camera import Camera

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from terrain.camera import Camera
 from terrain.checks.ground_steps import STEADY
 from terrain.checks.image_agreement import ImageMotion

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from odometry.checks.copied_columns import NO_GYROSCOPES
-from odometry.checks.copied_turns import without_gyroscope
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.copies.copied_columns import NO_GYROSCOPES
+from odometry.checks.copies.copied_turns import without_gyroscope
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.errors import RunFolderError
 from odometry.run import Run

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Robot, Run
 from terrain.camera import Camera
 from terrain.checks.drawn_images import RunRegions, run_regions, straight_ahead

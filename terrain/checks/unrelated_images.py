@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera import Camera
 from terrain.checks.ground_steps import (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.geometry.angles import wrap
 from odometry.run import Robot, Run
 from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m, suggest_pitch

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from odometry.checks.finding import CheckReport
+    from odometry.checks.findings.finding import CheckReport
 
 NO_DRIVE = ("one_motion", "treads_still")  # `identify` refuses such a run alone
 
@@ -81,7 +81,7 @@ def print_findings(folder: Path, report: "CheckReport") -> None:
 
 def next_step(reports: Mapping[Path, "CheckReport"], files: Mapping[Path, Path]) -> str:
     """What to do next, in one line."""
-    from odometry.checks.finding import Level
+    from odometry.checks.findings.finding import Level
 
     drawn = [file for folder, file in files.items() if not reports[folder].at(Level.REFUSED)]
     place = drawn[0] if len(drawn) == 1 else drawn[0].parent if drawn else ""
@@ -125,8 +125,8 @@ def _is_no_drive(report: "CheckReport") -> bool:
 
 def _only_slips(report: "CheckReport") -> bool:
     """Whether all that would mislead may be what the robot truly did."""
-    from odometry.checks.finding import Level
-    from odometry.checks.warned import TRUE_SLIP
+    from odometry.checks.findings.finding import Level
+    from odometry.checks.findings.warned import TRUE_SLIP
 
     odd = [finding for finding in report.findings if finding.level is not Level.NOTE]
     return all(finding.name in TRUE_SLIP for finding in odd)

@@ -75,7 +75,7 @@ def gap(
     Example:
       terrain-odometry gap hill_1 --calibration yard --holdout hill_2 --out gap
     """
-    from odometry.checks.warned import faults_of
+    from odometry.checks.findings.warned import faults_of
     from odometry.gap.config import GapConfig
     from odometry.gap.gap import find_gap
     from odometry.gap.prepare.uncertain_base import believed_model

@@ -124,8 +124,8 @@ def warned(found: "Identification") -> "tuple[ParameterSet, str]":
 
 
 def _warned_by_check(identified: "ParameterSet") -> "tuple[ParameterSet, str]":
-    from odometry.checks.finding import Level
-    from odometry.checks.warned import faults_of, sensor_faults
+    from odometry.checks.findings.finding import Level
+    from odometry.checks.findings.warned import faults_of, sensor_faults
     from terrain.cli.recordings import checks_made
 
     warnings = [one for one in faults_of(checks_made()) if one[1].level is Level.WARNING]
@@ -152,7 +152,7 @@ def require_determined(found: "Identification") -> None:
     ------
     IdentificationError
     """
-    from odometry.checks.finding import Level
+    from odometry.checks.findings.finding import Level
     from odometry.errors import IdentificationError
     from odometry.identification.identify import SIMPLE, simpler_model
     from odometry.identification.report import in_short

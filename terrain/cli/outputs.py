@@ -121,7 +121,7 @@ def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
 
 def comment(made: "Made") -> str:
     """The same as comment lines of TOML, warnings of the check alone."""
-    from odometry.checks.finding import Level
+    from odometry.checks.findings.finding import Level
 
     lines = [
         f"# check of {report.name}: {' '.join(finding.line.split())}\n"

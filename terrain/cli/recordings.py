@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from odometry.checks.finding import CheckReport
+    from odometry.checks.findings.finding import CheckReport
     from odometry.run import Run
     from odometry.run_span import Span
 
@@ -71,7 +71,7 @@ def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":
     images : bool
         Whether the camera and its images are checked as well.
     """
-    from odometry.checks.finding import Level
+    from odometry.checks.findings.finding import Level
     from terrain.checks.recording import checked_run
 
     run, report = checked_run(folder, span, images=images)

@@ -6,8 +6,8 @@ from textwrap import wrap
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import CheckReport, Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import CheckReport, Level
 from odometry.outputs.output_file import picture_source
 from odometry.report.check_plots import (
     marks_of,

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from odometry.report.before_use import before_use
 from odometry.report.figure import terrain_colours
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page

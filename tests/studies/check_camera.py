@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.run import Robot, Run
 from odometry.table import Table
 from terrain.camera import Camera

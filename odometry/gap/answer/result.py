@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from odometry.arrays import FloatArray
-from odometry.checks.warned import RunFinding
+from odometry.checks.findings.warned import RunFinding
 from odometry.effects.base_model import Base
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual

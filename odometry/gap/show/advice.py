@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from odometry.checks.warned import sensor_faults
+from odometry.checks.findings.warned import sensor_faults
 from odometry.effects.drive_limit import DriveLimit
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.late_treads import ActuatorLag, CommandDelay

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.checks.warned import faults_words
+from odometry.checks.findings.warned import faults_words
 from odometry.digits import within_interval
 from odometry.effects.base_model import Base
 from odometry.effects.residual import Residual

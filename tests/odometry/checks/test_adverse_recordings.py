@@ -5,8 +5,8 @@ from graphlib import TopologicalSorter
 import numpy as np
 import pytest
 
-from odometry.checks.consequences import CONSEQUENCES
-from odometry.checks.finding import Level
+from odometry.checks.findings.consequences import CONSEQUENCES
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
 from tests.odometry.checks.faulty import gyroscope, pose_stamps, positions, treads, yaw

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.beyond_slip import beyond_slip
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.unexplained.beyond_slip import beyond_slip
 from tests.odometry.checks.faulty import pose_stamps, positions, put, treads
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
 from tests.odometry.checks.test_other_robots import drive, winding

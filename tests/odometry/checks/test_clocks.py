@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.lag import Lag
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag
 from odometry.checks.recording import check_recording
-from odometry.checks.timing import found_in
+from odometry.checks.stamps.timing import found_in
 from odometry.run import Run
 from tests.odometry.checks.faulty import pose_stamps
 from tests.odometry.checks.test_confirmed_causes import turning_all_round

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.explained_lags import explained_lags
-from odometry.checks.finding import Level
-from odometry.checks.one_column_late import _squares_left
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.stamps.explained_lags import explained_lags
+from odometry.checks.stamps.one_column_late import _squares_left
 from odometry.table import Table
 from tests.odometry.checks.faulty import put, treads
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope

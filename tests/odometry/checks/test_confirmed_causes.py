@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Finding, Level
-from odometry.checks.recording import check_recording
-from odometry.checks.undo import (
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.findings.undo import (
     between,
     changed,
     exchanged,
@@ -19,6 +18,7 @@ from odometry.checks.undo import (
     times,
     treads_times,
 )
+from odometry.checks.recording import check_recording
 from odometry.table import Table
 from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw
 from tests.odometry.checks.test_other_robots import drive, winding

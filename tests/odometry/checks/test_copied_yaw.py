@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from tests.odometry.checks.faulty import gyroscope, put
 from tests.odometry.checks.test_other_robots import table, winding
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.checks.constancy import uneven_way
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
-from odometry.checks.map_lines import drawn_to_lines
+from odometry.checks.evidence.constancy import uneven_way
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
+from odometry.checks.poses.map_lines import drawn_to_lines
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 from tests.odometry.checks.test_columns_of_two_times import varied

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.settings import columns
+from odometry.checks.settings.settings import columns
 from tests.odometry.checks.faulty import gyroscope
 from tests.odometry.checks.test_odd_input import DRIVES, changed, drive, table, with_imu
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.lag import Lag
-from odometry.checks.late_stamps import pose_late
+from odometry.checks.evidence.lag import Lag
+from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
-from odometry.checks.undo import TREADS
+from odometry.checks.stamps.late_stamps import pose_late
 from tests.odometry.checks.faulty import put
 from tests.odometry.checks.test_other_robots import winding
 

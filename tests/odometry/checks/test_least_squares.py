@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from odometry.checks import disagreement
-from odometry.checks.evidence import Evidence
-from odometry.checks.least_squares import independent, least_squares, variances
-from odometry.checks.once import once
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.least_squares import independent, least_squares, variances
+from odometry.checks.evidence.once import once
+from odometry.checks.unexplained import disagreement
 from tests.odometry.checks.test_other_robots import winding
 
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
-from odometry.checks.interleaved import interleaved
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.tread_samples import tread_samples
+from odometry.checks.stamps.interleaved import interleaved
+from odometry.checks.treads.tread_samples import tread_samples
 from odometry.table import Table
 from tests.odometry.checks.faulty import put, treads
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings

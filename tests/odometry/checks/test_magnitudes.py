@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
-from odometry.checks.unit_tables import Unit, as_likely
+from odometry.checks.units.unit_tables import Unit, as_likely
 from tests.odometry.checks.faulty import positions, put, treads
 from tests.odometry.checks.test_other_robots import winding
 

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.catalogue import CATALOGUE
-from odometry.checks.consequences import CONSEQUENCES
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
-from odometry.checks.motion import motion_between
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.motion import motion_between
+from odometry.checks.evidence.steps import step_sizes
+from odometry.checks.findings.catalogue import CATALOGUE
+from odometry.checks.findings.consequences import CONSEQUENCES
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.steps import step_sizes
 from odometry.run import Robot, Run
 from odometry.table import Table
 

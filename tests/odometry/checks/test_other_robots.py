@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Level
-from odometry.checks.outliers import pose_outliers
+from odometry.checks.evidence.outliers import pose_outliers
+from odometry.checks.evidence.relation import relation
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.relation import relation
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.checks.faulty import gyroscope, put, treads

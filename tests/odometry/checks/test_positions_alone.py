@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence, course_turns
-from odometry.checks.finding import Level
-from odometry.checks.position_differences import paths_apart
+from odometry.checks.evidence.evidence import Evidence, course_turns
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.unexplained.position_differences import paths_apart
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put
 from tests.odometry.checks.test_confirmed_causes import turning_all_round
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope

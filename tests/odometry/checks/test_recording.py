@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.catalogue import CATALOGUE
-from odometry.checks.finding import Level
+from odometry.checks.findings.catalogue import CATALOGUE
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
 from odometry.table import Table
@@ -50,7 +50,7 @@ def test_a_fault_is_named_first(recording, fault):
 def test_every_finding_has_a_row_in_the_catalogue():
     """Names are the literals that stand alone on a line where a Finding is made."""
     assert set(FAULTS) <= set(CATALOGUE)
-    files = [file for file in (ROOT / "odometry/checks").glob("*.py") if file.stem != "catalogue"]
+    files = [file for file in (ROOT / "odometry/checks").rglob("*.py") if file.stem != "catalogue"]
     code = "\n".join(file.read_text(encoding="utf-8") for file in files)
     assert [name for name in CATALOGUE if f'"{name}"' not in code and name not in SIDES] == []
     made = re.findall(r'(?:Finding|_finding|_refused|_imu)\(\s*"([a-z_]+)"', code)

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
-from odometry.checks.position_axes import position_axes
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.turns_in_parts import turns_flip
+from odometry.checks.findings.finding import Level
+from odometry.checks.poses.position_axes import position_axes
 from odometry.checks.recording import check_recording
-from odometry.checks.scale_drift import scale_drifts
-from odometry.checks.tread_motion import tread_motion
-from odometry.checks.turns_in_parts import turns_flip
+from odometry.checks.treads.tread_motion import tread_motion
+from odometry.checks.unexplained.scale_drift import scale_drifts
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round
 from tests.odometry.checks.test_other_robots import PERIOD_S, drive

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.scale_change import scale_change
-from odometry.checks.undo import changed, in_turn
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.undo import changed, in_turn
+from odometry.checks.treads.scale_change import scale_change
 from tests.odometry.checks.test_other_robots import winding, without_gyroscope
 
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
+from odometry.checks.poses.smoothed_poses import smoothed_poses
 from odometry.checks.recording import check_recording
-from odometry.checks.smoothed_poses import smoothed_poses
 from tests.odometry.checks.faulty import put
 from tests.odometry.checks.test_other_robots import winding
 

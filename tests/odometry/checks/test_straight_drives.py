@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.straight_drives import straight_drives
+from odometry.checks.treads.straight_drives import straight_drives
 from odometry.run import Run
 from tests.odometry.checks.faulty import treads
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
-from odometry.checks.stuck_encoders import stuck_encoders
-from odometry.checks.undo import TREADS
+from odometry.checks.treads.stuck_encoders import stuck_encoders
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from tests.odometry.checks.faulty import put

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.constancy import uneven_map, uneven_yaw
-from odometry.checks.disagreement import lasting_disagreements
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import Level
-from odometry.checks.little_explained import little_explained
+from odometry.checks.evidence.constancy import uneven_map, uneven_yaw
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.repeated_rows import repeated_rows
-from odometry.checks.sides import sides
-from odometry.checks.tread_samples import peaks_often
+from odometry.checks.treads.sides import sides
+from odometry.checks.treads.tread_samples import peaks_often
+from odometry.checks.unexplained.disagreement import lasting_disagreements
+from odometry.checks.unexplained.little_explained import little_explained
+from odometry.checks.unexplained.repeated_rows import repeated_rows
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads
 from tests.odometry.checks.test_causes_that_contradict import UNKNOWN, seen, to_and_fro
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from odometry.checks.course_offsets import yaw_wanders
-from odometry.checks.evidence import Evidence
+from odometry.checks.evidence.course_offsets import yaw_wanders
+from odometry.checks.evidence.evidence import Evidence
 from tests.odometry.checks.faulty import put, yaw
 from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.finding import CheckReport, Finding, Level
-from odometry.checks.warned import faults_of, faults_words
+from odometry.checks.findings.finding import CheckReport, Finding, Level
+from odometry.checks.findings.warned import faults_of, faults_words
 from odometry.effects.corrected import Added
 from odometry.effects.gyroscope_error import GyroscopeError
 from odometry.effects.late_treads import ActuatorLag

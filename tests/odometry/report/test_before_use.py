@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.report.before_use import TITLE, before_use
 
 DEGREES = Finding("yaw_in_degrees", Level.WARNING, "yaw spans 340", "It is in degrees", "Turn it")

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.evidence import Evidence
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.report.check_plots import (
     effective_width_m,
     marks_of,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.identification.identify import identify
 from odometry.run import Run

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.run import Run
 from terrain.checks.image_files import FILES, decode, outside_of_odometry, sample_images, spread
 

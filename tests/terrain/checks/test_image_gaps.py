@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import terrain
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from terrain.checks.image_gaps import image_gaps
 
 

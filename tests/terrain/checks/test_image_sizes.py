@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 
 
 def scaled(matrix, factor):

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.checks.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport
 from terrain.believed_images import run_to_label
 from terrain.checks.ground_steps import pairs_to_compare
 from terrain.checks.lost_details import _stretches, lost_details

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import odometry
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from odometry.run_span import Span
 from terrain.checks.recording import check_run, checked_run
 from terrain.classification.classifier import TerrainClassifier

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Level
+from odometry.checks.findings.finding import Level
 from terrain.camera import Camera
 
 X, Y, Z, ROLL, PITCH, YAW = 0.2, 0.0, 0.55, 0.01, 0.85, 0.02

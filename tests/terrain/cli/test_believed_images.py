@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.run import Run
 from terrain.believed_images import ELSEWHERE, OF_STRETCHES, believed, run_to_label
 from terrain.cli.batch import batch

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.checks.finding import Finding, Level
+from odometry.checks.findings.finding import Finding, Level
 from terrain.calibration import mount_sources
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_sources import MountSource

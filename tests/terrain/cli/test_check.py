@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from terrain.cli.check import check, next_step
 
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.parameters import read_parameters
 from tests.terrain.cli.identify_calls import SHORT
 from tests.terrain.conftest import drive_curves

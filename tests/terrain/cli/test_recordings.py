@@ -9,7 +9,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.errors import RunFolderError
 from odometry.outputs.provenance import Made
 from odometry.run_span import Span

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from odometry.checks.finding import CheckReport, Finding, Level
+from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.installed import shipped_data

@@ -1,0 +1,1 @@
+"""Columns that were computed from others, and so cannot judge them."""

@@ -1,0 +1,1 @@
+"""What a recording says of motion: treads, gyroscope and poses, and how they belong together."""

@@ -1,0 +1,50 @@
+"""A robot that is carried on while it drives: a ferry, a train, or a reference that drifts."""
+
+import numpy as np
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.relation import relation
+
+DRIFT = 0.15  # of the fastest tread speed: slower drifts are left to slip
+HOLDS = 0.9  # correlation, and least ratio, of turns
+SURE = 10.0  # standard deviations
+EXPLAINS = 0.5  # share of the squares that are left with a constant velocity beside the treads
+
+
+def carried_along(evidence: Evidence) -> str:
+    """Words where positions move on in one direction whatever the treads do; "" elsewhere.
+
+    Displacements in the frame of the poses are those of the treads along the measured yaw, and a
+    constant velocity.
+    """
+    m = evidence.motion
+    if not _yaw_holds(evidence):
+        return ""
+    yaw = np.angle(np.exp(1j * m.yaw_rad).sum(axis=1))
+    axes = np.stack([np.cos(yaw), np.sin(yaw)])
+    course = np.stack([np.cos(m.course_rad), np.sin(m.course_rad)])
+    moved, driven = (m.distance_m * course).ravel(), (m.mean_m * axes).ravel()
+    nothing = np.zeros_like(m.lasts_s)
+    steady = (np.concatenate(c) for c in ((m.lasts_s, nothing), (nothing, m.lasts_s)))
+    alone, both = relation(moved, driven), relation(moved, driven, *steady)
+    if alone is None or both is None or not (both.certain(1, SURE) or both.certain(2, SURE)):
+        return ""
+    drift_m_s = float(np.hypot(*both.coefficients[1:]))
+    if drift_m_s < DRIFT * evidence.fastest_m_s:
+        return ""
+    if 1 - both.explained > EXPLAINS * (1 - alone.explained):
+        return ""
+    return (
+        f"positions move on by {drift_m_s:.2g} m/s in one direction whatever the treads do (a "
+        "robot that is carried, or a reference that drifts)"
+    )
+
+
+def _yaw_holds(evidence: Evidence) -> bool:
+    """Whether measured yaw turns as the gyroscope does, or else as the treads."""
+    fit, treads = evidence.pose_turn_by_gyroscope, evidence.pose_turn_by_difference
+    if not evidence.yaw_measured or (fit is None and treads is None):
+        return False
+    if fit is not None:
+        return fit.correlation > HOLDS and abs(fit.slope - 1) < 1 - HOLDS
+    return treads is not None and treads.correlation > HOLDS and treads.slope > 0

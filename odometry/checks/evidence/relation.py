@@ -1,0 +1,146 @@
+"""Robust linear relations between two measurements of the same motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.evidence.least_squares import independent, least_squares, variances
+
+ROUNDS = 8
+CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
+LEAST_WINDOWS = 8  # below, nothing is said
+# Treads differ from what they read by a few parts in a hundred (rounding, play, slip of a moment).
+# Where columns are this near to multiples of each other, that alone decides their shares, unless
+# what they differ by explains the target.
+LEAST_ANGLE_RAD = 0.05
+EXPLAINS = 0.5  # share of the residuals that is left when what they differ by is used
+PIECES = 4
+
+
+@dataclass(frozen=True)
+class Relation:
+    """`target = columns @ coefficients`, by least squares trimmed of outliers.
+
+    Attributes
+    ----------
+    coefficients, sigmas : (P,)
+    correlation : float
+        Of target and fit, over the windows kept.
+    kept : (K,)
+        Windows that are no outliers; False also where something was not measured.
+    measured : int
+        Windows in which everything was measured.
+    residuals : (K,)
+        NaN where not measured.
+    explained : float
+        Share of the squares of the target that the fit explains, outliers included.
+    distinct : bool
+        Whether the data determine the shares of the columns: else no coefficient is certain.
+    """
+
+    coefficients: FloatArray
+    sigmas: FloatArray
+    correlation: float
+    kept: BoolArray
+    measured: int
+    residuals: FloatArray
+    explained: float
+    distinct: bool
+
+    @property
+    def slope(self) -> float:
+        """The first coefficient."""
+        return float(self.coefficients[0])
+
+    @property
+    def slope_sigma(self) -> float:
+        """Its standard deviation."""
+        return float(self.sigmas[0])
+
+    def certain(self, place: int = 0, times: float = 5.0) -> bool:
+        """Whether a coefficient differs from zero by so many standard deviations."""
+        apart = abs(self.coefficients[place]) > times * self.sigmas[place]
+        return bool(self.distinct and apart)
+
+
+def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
+    """Fit `target` (K,) by columns (K,) each; None where too little was measured or moves.
+
+    Outliers are left out by their distance from the fit in units of 1.4826 times the median of
+    absolute residuals (least trimmed squares by repeated weighting, Rousseeuw and Leroy 1987).
+    """
+    rows = np.stack(columns)
+    measured = np.isfinite(target) & np.isfinite(rows).all(axis=0)
+    known, of_known = rows[:, measured], target[measured]
+    if len(of_known) < LEAST_WINDOWS or not independent(known):
+        return None
+    coefficients, kept = _least_absolute(known, of_known), np.ones(len(of_known), dtype=np.bool_)
+    for _ in range(ROUNDS):
+        sizes = np.abs(of_known - coefficients @ known)
+        scale = 1.4826 * np.median(sizes)
+        before, kept = kept, sizes <= CUTOFF * scale + 1e-12
+        if kept.sum() < LEAST_WINDOWS or not independent(known[:, kept]):
+            kept = before
+        coefficients = least_squares(known[:, kept], of_known[kept])
+        if (kept == before).all():
+            break
+    left = of_known - coefficients @ known
+    fitted, of_fitted = known[:, kept], of_known[kept]
+    variance = np.sum(left[kept] ** 2) / max(len(of_fitted) - len(columns), 1)
+    all_kept = measured.copy()
+    all_kept[measured] = kept
+    return Relation(
+        coefficients,
+        np.sqrt(np.maximum(variance * variances(fitted), 0.0)),
+        _correlation(of_fitted, coefficients @ fitted),
+        all_kept,
+        len(of_known),
+        target - coefficients @ rows,
+        1 - float(np.sum(left**2) / max(np.sum(of_known**2), 1e-300)),
+        _distinct(fitted, of_fitted),
+    )
+
+
+def pieces(target: FloatArray, *columns: FloatArray) -> list[Relation]:
+    """The relation of columns (K,) to a target (K,) in each quarter of windows that suffices."""
+    known = np.flatnonzero(np.isfinite(target) & np.isfinite(np.stack(columns)).all(axis=0))
+    found = (
+        relation(target[rows], *(column[rows] for column in columns))
+        for rows in np.array_split(known, PIECES)
+    )
+    return [piece for piece in found if piece is not None]
+
+
+def _distinct(columns: FloatArray, target: FloatArray) -> bool:
+    """Whether the weakest direction of the scaled columns is wide, or explains the target.
+
+    Scaled singular values: Belsley, Kuh and Welsch 1980, chapter 3.
+    """
+    lengths = np.linalg.norm(columns, axis=1)
+    if not (lengths > 0).all():
+        return False
+    scaled = columns / lengths[:, None]
+    squares = np.linalg.eigvalsh(scaled @ scaled.T)  # of the singular values, the least first
+    if squares[0] > LEAST_ANGLE_RAD**2 * squares[-1]:
+        return True
+    directions, _, _ = np.linalg.svd(scaled.T, full_matrices=False)
+    parts = directions.T @ target
+    left = max(float(np.sum(target**2) - np.sum(parts**2)), 0.0)
+    return left < EXPLAINS * (left + float(parts[-1] ** 2))
+
+
+def _least_absolute(columns: FloatArray, target: FloatArray) -> FloatArray:
+    """A start that a third of outliers does not move: least absolute residuals, by weights."""
+    coefficients = least_squares(columns, target)
+    for _ in range(ROUNDS):
+        away = np.abs(target - coefficients @ columns)
+        weights = 1 / np.sqrt(np.maximum(away, 1e-3 * away.sum() / len(away) + 1e-12))
+        coefficients = least_squares(columns * weights, target * weights)
+    return coefficients
+
+
+def _correlation(a: FloatArray, b: FloatArray) -> float:
+    """Correlation about zero: the motion of a robot has a natural zero."""
+    size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
+    return float(np.sum(a * b) / size) if size > 0 else 0.0

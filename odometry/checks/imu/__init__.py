@@ -1,0 +1,1 @@
+"""Gyroscope, roll and pitch, and the side to which the robot turns."""

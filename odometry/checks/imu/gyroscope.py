@@ -1,0 +1,230 @@
+"""Bias, range and axis of the gyroscope."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.outliers import spikes
+from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.windows.spans import constant_spans
+
+LEAST_BIAS_RAD_S = 0.003
+LARGE_BIAS_RAD_S = 0.1
+LEAST_DRIFT_RAD_S, SURELY = 0.01, 2.0  # times what is said of both rates
+CERTAIN = 4.0
+STATIONARY_M_S = 0.005
+LEAST_STATIONARY_S = 2.0
+CLIPPED = 0.01  # share of rows at the very largest rate
+LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
+HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
+DEAD_S = 1.0
+FAR_FROM_ZERO = 10.0  # times the step between other rates: none is smaller
+LEAST_HOLDS, LONG_HOLD_S = 20, 0.3  # from which a rate that is held makes headings late
+EVEN = 1.5  # ratio of a long to a short hold below which they have one pace
+OFTEN = 0.3  # share of these holds in which the treads change
+
+
+def gyroscope(evidence: Evidence) -> Iterator[Finding]:
+    """A bias (a note), clipping, held values, dead stretches, corrupt samples."""
+    if evidence.yaw_rate is None:
+        return
+    yield from _bias(evidence)
+    yield from _clipped(evidence)
+    yield from _held(evidence)
+    yield from _dead(evidence)
+    yield from _absurd(evidence)
+
+
+def _bias(evidence: Evidence) -> Iterator[Finding]:
+    found = stationary_bias(evidence) or _bias_by_poses(evidence)
+    if found is None:
+        return
+    bias, sigma, how = found
+    if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
+        return
+    large, at_rest = abs(bias) > LARGE_BIAS_RAD_S, how.startswith("while stationary")
+    if large and at_rest:
+        yield _turns_at_rest(bias, how)
+        return
+    yield Finding(
+        "gyroscope_bias",
+        Level.WARNING if large else Level.NOTE,
+        f"gyro_z reads {bias:+.4f} +- {sigma:.4f} rad/s {how}",
+        ("The gyroscope has a bias" if at_rest else "The gyroscope has a bias, or yaw drifts")
+        + (" far above what is usual (units, or not at rest)" if large else ""),
+        "Subtract it where the yaw rate is used; some seconds at rest measure it",
+    )
+
+
+def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
+    return Finding(
+        "turns_at_rest",
+        Level.WARNING,
+        f"gyro_z reads {rate_rad_s:+.3f} rad/s in the median {how} by the treads",
+        "The treads read zero while the robot moves (odometry is lost, the robot is carried or "
+        "pushed), or the gyroscope has a bias far above what is usual",
+        "Leave these stretches out: --from and --to",
+    )
+
+
+def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
+    """Bias [rad/s], its standard deviation, and from what: while both treads stand still."""
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    stamps_s, rates = evidence.yaw_rate
+    still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
+    rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
+    settled = still & np.roll(still, 1) & np.roll(still, round(0.5 / max(evidence.period_s, 1e-3)))
+    at_rest = rates[settled[rows]]
+    lasts_s = len(at_rest) * float(np.median(np.diff(stamps_s)))
+    if lasts_s < LEAST_STATIONARY_S or len(at_rest) < 20:
+        return None
+    middle = float(np.median(at_rest))
+    spread = 1.4826 * float(np.median(np.abs(at_rest - middle)))
+    if spread > 0.05:
+        return None
+    return middle, 4 * spread / np.sqrt(len(at_rest)), f"while stationary ({lasts_s:.1f} s)"
+
+
+def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
+    found = evidence.pose_turn_by_gyroscope
+    if found is None or not evidence.yaw_measured:
+        return None
+    if found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
+        return None
+    return -float(found.coefficients[1]), 2 * float(found.sigmas[1]), "more than measured yaw turns"
+
+
+def drifts_at_rest(evidence: Evidence) -> str:
+    """Measured yaw that turns steadily against a gyroscope that reads another rate at rest."""
+    if evidence.yaw_rate is None or (rest := stationary_bias(evidence)) is None:
+        return ""
+    if (by_poses := _bias_by_poses(evidence)) is None:
+        return ""
+    apart = rest[0] - by_poses[0]
+    if abs(apart) < LEAST_DRIFT_RAD_S + SURELY * (rest[1] + by_poses[1]):
+        return ""
+    return (
+        f"measured yaw turns by {apart:+.3f} rad/s besides what gyro_z reads, which is "
+        f"{rest[0]:+.3f} rad/s at rest (poses that drift round, or a gyroscope that is wrong in "
+        "turns)"
+    )
+
+
+def _clipped(evidence: Evidence) -> Iterator[Finding]:
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    rates = evidence.yaw_rate[1]
+    largest = float(np.abs(rates).max())
+    at_top = np.abs(np.abs(rates) - largest) < 1e-9
+    lively = len(np.unique(np.round(rates[~at_top], 6))) > LIVELY
+    if largest > 0 and at_top.mean() > CLIPPED and at_top.sum() > 10 and lively:
+        yield Finding(
+            "gyroscope_clipped",
+            Level.WARNING,
+            f"{100 * at_top.mean():.1f} % of gyro_z are exactly +-{largest:.4g} rad/s",
+            "The gyroscope is clipped (saturates): its full-scale range is too small",
+            "Choose a larger range; do not use these rows",
+        )
+
+
+def held_s(evidence: Evidence) -> float:
+    """How long each yaw rate is repeated that is renewed at an even, slow pace; 0 elsewhere."""
+    if evidence.yaw_rate is None:
+        return 0.0
+    stamps_s, rates = evidence.yaw_rate
+    renewed_s = stamps_s[1:][np.diff(rates) != 0]
+    if len(renewed_s) < LEAST_HOLDS:
+        return 0.0
+    short_s, usual_s, long_s = np.quantile(np.diff(renewed_s), [0.1, 0.5, 0.9])
+    slow = usual_s > LONG_HOLD_S and usual_s > 2.5 * float(np.median(np.diff(stamps_s)))
+    even = long_s < EVEN * short_s
+    return float(usual_s) if slow and even and _treads_change(evidence, renewed_s) else 0.0
+
+
+def _held(evidence: Evidence) -> Iterator[Finding]:
+    """A rate that is renewed far more rarely than it is logged."""
+    if not (lasts_s := held_s(evidence)):
+        return
+    yield Finding(
+        "gyroscope_held",
+        Level.WARNING,
+        f"gyro_z is renewed only every {lasts_s:.2g} s and repeated in the rows between, while "
+        "the speeds of the treads change",
+        "The gyroscope is read more slowly than it is logged: the log holds its last value, which "
+        "is late, and turns between two readings are lost",
+        "Log the yaw rate at 10 Hz or more, or leave gyro_z empty",
+    )
+
+
+def _treads_change(evidence: Evidence, renewed_s: FloatArray) -> bool:
+    """Whether the treads change their turn within many of the times between these stamps."""
+    rows = np.unique(
+        np.searchsorted(evidence.stamps_s, renewed_s).clip(0, len(evidence.stamps_s) - 1)
+    )
+    turning = np.diff(evidence.speeds_m_s, axis=1)[:, 0]
+    changed = np.maximum.reduceat(turning, rows) - np.minimum.reduceat(turning, rows)
+    return bool(np.mean(changed > HELD * evidence.fastest_m_s) > OFTEN)
+
+
+def _dead(evidence: Evidence) -> Iterator[Finding]:
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    stamps_s, rates = evidence.yaw_rate
+    spans = constant_spans(stamps_s, rates, DEAD_S)
+    odd = [span for span in spans if _turns_by_treads(evidence, span)]
+    if not odd:
+        return
+    lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+    yield Finding(
+        "gyroscope_dead",
+        Level.WARNING,
+        f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
+        _dead_zone(evidence) or "The gyroscope is stuck or was lost",
+        "Leave gyro_z empty there",
+        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+    )
+
+
+def _dead_zone(evidence: Evidence) -> str:
+    """Words where rates are zero or far from zero: slow turns are cut off."""
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    sizes = np.unique(np.abs(evidence.yaw_rate[1]))
+    if len(sizes) < LIVELY or sizes[0] > 0:
+        return ""
+    if sizes[1] < FAR_FROM_ZERO * float(np.quantile(np.diff(sizes[1:]), 0.9)):
+        return ""
+    return (
+        f"It has a dead zone: slower turns than {sizes[1]:.2g} rad/s read zero (a threshold "
+        "against drift); or it was lost at times"
+    )
+
+
+def _turns_by_treads(evidence: Evidence, span: FloatArray) -> bool:
+    """Whether the treads turn the robot within a span, and not by one rate that both hold."""
+    m = evidence.uniform
+    inside = (m.start_s >= span[0] - 1e-6) & (m.end_s <= span[1] + 1e-6)
+    if not inside.any():
+        return False
+    turning_m_s = m.difference_m[inside] / m.lasts_s[inside]
+    row = int(np.searchsorted(evidence.yaw_rate[0], span[0])) if evidence.yaw_rate else 0
+    reads_zero = evidence.yaw_rate is not None and evidence.yaw_rate[1][row] == 0
+    changes = float(np.ptp(turning_m_s)) > HELD * evidence.fastest_m_s
+    turns = float(np.mean(np.abs(turning_m_s))) > 0.1 * evidence.fastest_m_s
+    return turns and (reads_zero or changes)
+
+
+def _absurd(evidence: Evidence) -> Iterator[Finding]:
+    found = evidence.run.yaw_rate
+    assert found is not None  # noqa: S101 - checked by the caller
+    rates = found.yaw_rate_rad_s
+    far = spikes(rates) & (np.abs(rates) > 3 * np.quantile(np.abs(rates), 0.99) + 1.0)
+    if far.any():
+        yield Finding(
+            "absurd_yaw_rate",
+            Level.WARNING,
+            f"gyro_z of {found.file} jumps out and back in {counted(int(far.sum()), 'sample')}, "
+            f"up to {rates[far][np.argmax(np.abs(rates[far]))]:.4g} rad/s",
+            "Single corrupt samples of the gyroscope (outliers, spikes)",
+            "Remove these rows",
+            tuple((evidence.run_time_s(s),) * 2 for s in found.stamps_s[far]),
+        )

@@ -1,0 +1,1 @@
+"""The measured poses: positions, yaw, and the course that they drive."""

@@ -1,0 +1,129 @@
+"""What is odd about single stretches and samples of the measured poses."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.relation import pieces, relation
+from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.findings.undo import moved
+from odometry.checks.poses.course import OFF_RAD
+from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
+from odometry.checks.poses.pose_jumps import jumps
+from odometry.checks.poses.yaw_jumps import yaw_jumps
+
+LEAST_ARM_M = 0.6
+LASTING = 0.4  # share of the swing that each piece of the recording has
+OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
+LEAST_S, LEAST_PERIODS = 5.0, 10.0  # an outage is longer than both
+LEAST_M = 1.0  # that the treads travel meanwhile
+
+
+def poses(evidence: Evidence) -> Iterator[Finding]:
+    """Frozen and repeated poses, jumps and outliers."""
+    if evidence.positions_measured is None or evidence.run.pose is None:
+        return
+    yield from _outliers(evidence)
+    rows = np.flatnonzero(evidence.positions_measured & ~evidence.pose_outliers)
+    stamps_s = evidence.run.pose.stamps_s[rows]
+    positions = evidence.run.pose.stack("x", "y")[rows]
+    travel_m = evidence.travel_m(stamps_s)
+    track = PoseTrack(stamps_s, positions, travel_m)
+    repeated = list(repeated_poses(track))
+    frozen = list(frozen_poses(evidence, track))
+    yield from repeated or frozen
+    yield from pose_bursts(evidence, track)
+    spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
+    yield from yaw_jumps(evidence, rows)
+    yield from _lever_arm(evidence)
+    yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
+
+
+def _outliers(evidence: Evidence) -> Iterator[Finding]:
+    pose, found = evidence.run.pose, np.flatnonzero(evidence.pose_outliers)
+    if pose is None or evidence.positions_measured is None or not len(found):
+        return
+    measured = np.flatnonzero(evidence.positions_measured)
+    beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
+    away = np.hypot(*(pose.stack("x", "y")[found] - pose.stack("x", "y")[beside]).T)
+    share = len(found) / len(measured)
+    yield Finding(
+        "pose_outliers",
+        Level.WARNING if share > OUTLIERS or len(found) > 5 else Level.NOTE,
+        f"{counted(len(found), 'pose')} ({100 * share:.3g} %) up to {away.max():.3g} m away from "
+        "the neighbours, and back again",
+        "Outliers of the reference (multipath, a wrong match)",
+        "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
+        tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),
+    )
+
+
+def _place(x_m: float, y_m: float) -> str:
+    """A place in the robot frame in words, up to "the centre"."""
+    along = f"{abs(x_m):.2f} m {'ahead of' if x_m >= 0 else 'behind'}"
+    return f"{along} and {abs(y_m):.2f} m to the {'left' if y_m >= 0 else 'right'} of"
+
+
+def _axis_rad(evidence: Evidence) -> float:
+    """From yaw to the robot's axis; nothing where an offset of yaw has a name of its own."""
+    offset = evidence.heading.offset_rad if evidence.heading is not None else 0.0
+    return offset if abs(offset) < OFF_RAD else 0.0
+
+
+def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
+    """A sensor far from the centre swings sideways, or forwards, with every turn."""
+    m = evidence.motion
+    turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad
+    sideways = relation(evidence.sideways_m, turn)
+    forward = relation(evidence.forward_m, m.mean_m, turn)
+    if sideways is None or forward is None:
+        return
+    x_m, y_m = sideways.slope, -float(forward.coefficients[1])
+    sure = sideways.certain(0, 8.0), forward.certain(1, 8.0)
+    far = max(abs(x_m) * sure[0], abs(y_m) * sure[1])
+    limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
+    place = 0 if far == abs(x_m) else 1
+    columns = (turn,) if place == 0 else (m.mean_m, turn)
+    fits = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
+    size = (x_m, -y_m)[place]
+    swings = [of.coefficients[place] / size for of in fits if of.certain(place)]
+    if far > limit_m and len(swings) > 1 and min(swings) > LASTING:
+        yield Finding(
+            "far_sensor",
+            Level.WARNING,
+            f"measured positions swing in turns like a point that lies {_place(x_m, y_m)} the "
+            f"centre of the robot; more than {limit_m:.2f} m is far",
+            "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
+            "not that of the robot, or positions are late against yaw (filtered)",
+            f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
+            mend=moved(x_m, y_m, _axis_rad(evidence)),
+        )
+
+
+def pose_outages(evidence: Evidence) -> Iterator[Finding]:
+    """A reference that was lost, and said nothing meanwhile."""
+    if evidence.run.pose is None or evidence.positions_measured is None:
+        return
+    stamps_s = evidence.run.pose.stamps_s[evidence.positions_measured]
+    inside = (stamps_s >= evidence.stamps_s[0]) & (stamps_s <= evidence.stamps_s[-1])
+    stamps_s = stamps_s[inside]
+    if len(stamps_s) < 2:
+        return
+    lasts_s = np.diff(stamps_s)
+    driven_m = np.diff(evidence.travel_m(stamps_s))
+    long = lasts_s > max(LEAST_S, LEAST_PERIODS * float(np.median(lasts_s)))
+    rows = np.flatnonzero(long & (driven_m > LEAST_M))
+    if not len(rows):
+        return
+    spans = [(evidence.run_time_s(stamps_s[i]), evidence.run_time_s(stamps_s[i + 1])) for i in rows]
+    yield Finding(
+        "pose_outage",
+        Level.NOTE,
+        f"pose.csv has no positions for {lasts_s[rows].sum():.1f} s in "
+        f"{counted(len(rows), 'place')} (first from {spans[0][0]:.1f} s on, for "
+        f"{lasts_s[rows[0]]:.1f} s) while the treads travel {driven_m[rows].sum():.3g} m",
+        "The reference was lost for a while (an outage), or its rows were",
+        "Nothing to do: windows do not cross it, and the filter goes on by the odometer",
+        tuple(spans),
+    )

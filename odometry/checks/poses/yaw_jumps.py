@@ -1,0 +1,108 @@
+"""Steps of the measured yaw against the gyroscope."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.steps import (
+    FAR_S,
+    JITTER_S,
+    JUMP_TIMES,
+    first_ones,
+    jumps_by_itself,
+    moments,
+    rate_of,
+    step_sizes,
+)
+from odometry.checks.findings.finding import Finding, Level, counted, disagreement
+from odometry.windows.gaps import odometry_gaps
+from odometry.windows.spans import runs_of, within
+
+LEAST_JUMP_RAD = np.radians(25)
+LEAST_STEPS = 20
+HALF_TURN_RAD = np.radians(30)  # a jump that is off by less is half a turn
+WAY_M = 0.05  # from a jump on, of the treads' travel that says which way the robot drives
+AS_COURSE = (
+    "Yaw is the course over ground, which turns round where the robot reverses: not the heading "
+    "(a receiver without a second antenna or a compass)",
+    "Leave yaw empty: positions alone are used then",
+)
+CORRECTED = (
+    "Yaw jumps: the heading of the reference was corrected, lost or held for a while "
+    "(magnetometer, antennas), or has another meaning in a part of the run; or "
+    "two recordings are joined there",
+    "Number the stretches between jumps in a column `window`, or cut with --from and --to",
+)
+
+
+def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
+    """Steps of the measured yaw against the gyroscope, and whether the yaw itself makes them.
+
+    `rows` (M,) are those of pose.csv that are checked.
+    """
+    pose = evidence.run.pose
+    if pose is None or not evidence.yaw_measured or evidence.yaw_rate is None:
+        return
+    by_gyroscope = evidence.pose_turn_by_gyroscope
+    if by_gyroscope is None or by_gyroscope.correlation < 0.9:
+        return
+    of_rate_s = evidence.yaw_rate[0]
+    rows = rows[within(pose.stamps_s[rows], np.array([[of_rate_s[0], of_rate_s[-1]]]))]
+    stamps_s = pose.stamps_s[rows]
+    yaw = np.radians(pose["yaw"][rows]) if evidence.yaw_in_degrees else pose["yaw"][rows]
+    heading = evidence.integrals.gyroscope_rad(stamps_s) * by_gyroscope.slope
+    known = np.isfinite(yaw) & np.isfinite(heading)
+    stamps_s, yaw, heading = stamps_s[known], np.unwrap(yaw[known]), heading[known]
+    step = _steps(evidence, stamps_s, np.unwrap(yaw - heading))
+    measured = np.isfinite(step)
+    if measured.sum() < LEAST_STEPS:
+        return
+    usual = 1.4826 * float(np.median(step[measured]))
+    rate = np.abs(rate_of(heading, stamps_s))
+    odd = measured & (step > np.maximum(JUMP_TIMES * usual, LEAST_JUMP_RAD + JITTER_S * rate))
+    peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
+    own = [i for i in peaks if jumps_by_itself(stamps_s, yaw[:, None], i, float(step[i]))]
+    if own:
+        yield _jumps(evidence, stamps_s[own], step[own])
+    elif peaks:
+        yield disagreement(
+            f"yaw of pose.csv and the gyroscope part by {np.degrees(step[peaks[0]]):.0f} degrees "
+            f"within {2 * FAR_S:g} s at {evidence.run_time_s(stamps_s[peaks[0]]):.1f} s, where the "
+            "yaw does not jump itself"
+        )
+
+
+def _steps(evidence: Evidence, stamps_s: FloatArray, off_rad: FloatArray) -> FloatArray:
+    """`step_sizes` (M,) of yaw less gyroscope; NaN where the gyroscope was not recorded."""
+    step = step_sizes(stamps_s, np.stack([off_rad, np.zeros_like(off_rad)], axis=-1))
+    if evidence.gyroscope_file == "odometry.csv":
+        gaps_s = odometry_gaps(evidence.run).spans_s
+        step[within(stamps_s, gaps_s + np.array([-FAR_S, FAR_S]))] = np.nan
+    return step
+
+
+def _jumps(evidence: Evidence, at_s: FloatArray, steps_rad: FloatArray) -> Finding:
+    turned = np.abs(steps_rad - np.pi) < HALF_TURN_RAD
+    reverses = sum(_reverses(evidence, stamp_s) for stamp_s in at_s[turned].tolist())
+    sizes = [f"{degrees:.0f} degrees" for degrees in np.degrees(steps_rad)]
+    places = first_ones(evidence, at_s, sizes)
+    return Finding(
+        "yaw_jumps",
+        Level.WARNING,
+        f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(at_s), 'time')}: "
+        f"{places}",
+        *(AS_COURSE if 2 * reverses > len(at_s) else CORRECTED),
+        moments(evidence, at_s),
+    )
+
+
+def _reverses(evidence: Evidence, stamp_s: float) -> bool:
+    """Whether the robot drives the other way after a stamp than it did before, with any pause."""
+    of, here = evidence.integrals, int(np.searchsorted(evidence.stamps_s, stamp_s))
+    travel_m = (of.left_m(evidence.stamps_s) + of.right_m(evidence.stamps_s)) / 2
+    ahead_m = travel_m - travel_m[min(here, len(travel_m) - 1)]
+    far = np.abs(ahead_m) > WAY_M
+    before, after = np.flatnonzero(far[:here]), np.flatnonzero(far[here:]) + here
+    return bool(len(before) and len(after) and ahead_m[before[-1]] * ahead_m[after[0]] > 0)

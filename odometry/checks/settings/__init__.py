@@ -1,0 +1,1 @@
+"""What run.toml says, and columns whose names are nearly known."""

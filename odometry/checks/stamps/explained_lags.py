@@ -1,0 +1,86 @@
+"""Lags that are named where other stamps explain what differs, and disagreement elsewhere."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag
+from odometry.checks.evidence.relation import Relation
+from odometry.checks.findings.finding import Finding, disagreement
+from odometry.checks.stamps.held_treads import held_treads
+from odometry.checks.stamps.late_positions import apart_from_yaw
+from odometry.checks.stamps.late_stamps import one_side_alone
+from odometry.checks.stamps.timing import found_in, lags_of
+
+OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
+# Shares of the squares not explained, and of the mean difference in the nine tenths of the windows
+# that differ least (stops and gaps make outliers of the others), that are left with other stamps.
+# Where they were late one of both is below; where yaw wanders or bends, or a gyroscope has a dead
+# zone, they are 0.76 and 0.91, and more.
+LEFT, ORDINARY_LEFT, ORDINARY = 0.75, 0.8, 0.9
+DIFFER = 0.02  # share of the turns not explained, below which sensors agree
+
+
+def explained_lags(evidence: Evidence) -> Iterator[Finding]:
+    """The findings of `timing`: turns that differ otherwise seem late by chance.
+
+    Stamps that are late make both positions and yaw late, both treads, and their turns and way.
+    """
+    lags = lags_of(evidence)
+    found = list(found_in(evidence, lags))
+    apart: str | None = None
+    if not any(finding.name == "clocks_apart" for finding in found):
+        apart = apart_from_yaw(evidence, lags.get(("pose", "treads")))
+    for finding in found:
+        if finding.name == "treads_late" and apart:
+            continue  # their mean is not
+        if finding.name != "pose_late":
+            yield from _judged(evidence, finding, lags)
+        elif not apart:
+            alone = "; or those of yaw alone: the positions do not decide" * (apart is None)
+            yield from _judged(evidence, replace(finding, cause=finding.cause + alone), lags)
+    if apart:
+        yield disagreement(apart)
+
+
+def _judged(
+    evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
+) -> Iterator[Finding]:
+    wheels = lags.get(("treads", "gyroscope"))
+    if finding.name == "treads_late" and any(held_treads(evidence)):
+        return  # by half of the time for which they are held
+    if finding.name == "treads_late" and wheels and (of := one_side_alone(evidence, wheels)):
+        yield disagreement(f"{finding.seen}, but {of}")
+    elif finding.name not in OF_STAMPS or _is_explained(evidence, finding):
+        yield finding
+    elif any(of is not None and 1 - of.explained > DIFFER for of in _relations(evidence)):
+        yield disagreement(f"{finding.seen}, but with other stamps they differ by as much")
+
+
+def _is_explained(evidence: Evidence, finding: Finding) -> bool:
+    """Whether two sensors agree far better on the turns with the stamps mended."""
+    if finding.mend is None:
+        return True
+    mended = Evidence(finding.mend(evidence.run), evidence.left_out_s)
+    return any(
+        1 - after.explained < LEFT * (1 - before.explained)
+        or _ordinary_difference(after) < ORDINARY_LEFT * _ordinary_difference(before)
+        for before, after in zip(_relations(evidence), _relations(mended), strict=True)
+        if before is not None and after is not None
+    )
+
+
+def _ordinary_difference(found: Relation) -> float:
+    """Mean size of the smaller residuals."""
+    sizes = np.sort(np.abs(found.residuals[np.isfinite(found.residuals)]))
+    return float(np.mean(sizes[: max(int(ORDINARY * len(sizes)), 1)]))
+
+
+def _relations(evidence: Evidence) -> tuple[Relation | None, ...]:
+    return (
+        evidence.pose_turn_by_gyroscope,
+        evidence.pose_turn_by_treads,
+        evidence.gyroscope_by_treads,
+    )

@@ -1,0 +1,85 @@
+"""Tread speeds without their sign: encoders of one channel, or a log of magnitudes."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import BoolArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.motion import Motion
+from odometry.checks.findings.finding import Finding, Level
+
+LEAST_WINDOWS = 6
+ORDINARY = (0.5, 1.5)  # metres moved for each of tread travel; else the unit is another one
+MOVING = 0.1  # share of the fastest speed
+EQUAL = 0.15  # difference of two sides, as a share of their sum, that turns a robot little
+NARROWEST, WIDEST = 0.8, 4.0  # effective width in track widths
+OF_ONE_WIDTH = 0.25  # difference of a spin from the usual one, which starts and stops leave
+MOST = 0.6  # of the turns with equal speeds
+BACKWARD = 0.5  # of the way of the treads
+# Of the windows backwards, where treads read nothing: these have lost more than a sign.
+SILENT = 0.5
+FORWARD_TOO = 0.1  # share of the windows; else the yaw is off by half a turn
+
+
+def unsigned(evidence: Evidence) -> Iterator[Finding]:
+    """Speeds that are never negative though the robot spins on the spot or drives backwards.
+
+    Where both sides read about the same, the robot hardly turns: it turns as if one side
+    ran backwards. Where both are positive, measured positions go backwards.
+    """
+    metres = evidence.metres_per_metre
+    other_unit = metres is not None and not ORDINARY[0] < metres < ORDINARY[1]
+    if (evidence.speeds_m_s < 0).any() or other_unit:
+        return
+    spins, backwards = _spins(evidence), _backwards(evidence)
+    seen = []
+    if spins >= LEAST_WINDOWS:
+        seen.append(f"the robot turns on the spot in {spins} windows with equal speeds")
+    if backwards >= LEAST_WINDOWS:
+        seen.append(f"positions go backwards in {backwards} windows")
+    if seen:
+        yield Finding(
+            "treads_unsigned",
+            Level.WARNING,
+            f"no tread speed is negative, and {', and '.join(seen)}",
+            "Tread speeds have lost their sign: encoders of one channel, or magnitudes in the log",
+            "Log the direction of each tread; where it cannot be had, take the sign of the command",
+        )
+
+
+def _spins(evidence: Evidence) -> int:
+    """Windows of turns that one side alone, running backwards, explains.
+
+    With equal speeds the robot either drives straight or spins as if of one width: turns of any
+    size in between are another fault.
+    """
+    turns, of = evidence.uniform.gyroscope_rad, evidence.uniform
+    if evidence.yaw_rate is None:
+        turns, of = evidence.pose_turn_rad, evidence.turn_motion
+    both_m = of.left_m + of.right_m
+    equal = _moves(evidence, of) & (np.abs(of.difference_m) < EQUAL * both_m)
+    over_width = np.abs(turns) * evidence.run.robot.track_width / np.maximum(both_m, 1e-9)
+    turning = equal & (over_width > EQUAL / 2)
+    if not turning.any():
+        return 0
+    usual = float(np.median(over_width[turning]))
+    spun = turning & (np.abs(over_width / usual - 1) < OF_ONE_WIDTH)
+    one_width = 1 / WIDEST < usual < 1 / NARROWEST and spun.sum() > MOST * turning.sum()
+    return int(spun.sum()) if one_width else 0
+
+
+def _backwards(evidence: Evidence) -> int:
+    m = evidence.motion
+    forward_m = evidence.forward_m
+    moving = _moves(evidence, m) & np.isfinite(forward_m)
+    ahead = moving & (forward_m > BACKWARD * m.mean_m)
+    behind = moving & (forward_m < -BACKWARD * m.mean_m)
+    enough = ahead.sum() > FORWARD_TOO * moving.sum()
+    silent = (m.mean_m < MOVING * evidence.fastest_m_s * m.lasts_s) & np.isfinite(forward_m)
+    silent &= forward_m < -MOVING * evidence.fastest_m_s * m.lasts_s
+    return int(behind.sum()) if enough and silent.sum() < SILENT * behind.sum() else 0
+
+
+def _moves(evidence: Evidence, motion: Motion) -> BoolArray:
+    return np.asarray(motion.mean_m > MOVING * evidence.fastest_m_s * motion.lasts_s)

@@ -1,0 +1,1 @@
+"""What still differs between sensors where no known cause explains it."""

@@ -1,0 +1,1 @@
+"""Units of speeds, positions and turns, and the track width."""
