@@ -27,7 +27,7 @@ from terrain.camera_files.read import read_calibration
 from terrain.camera_files.transforms import mount_in, read_transforms
 from terrain.demo import WITH, WITHOUT
 from terrain.images import read_image
-from terrain.switch_delay import true_stretches
+from terrain.result.switch_delay import true_stretches
 
 Point = tuple[float, float]
 OUT = Path(__file__).parent / "pictures"

@@ -1,4 +1,4 @@
-from .camera import Camera
+from .camera.camera import Camera
 from .checks.recording import check_run
 from .classification.answer import Classification
 from .classification.classifier import TerrainClassifier
@@ -9,22 +9,22 @@ from .classification.training import Training, train
 from .config import Config
 from .demo import run_demo
 from .errors import TerrainError
-from .footprint_parts import Rectangle
 from .images import decode_image, read_image, to_grey
 from .labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain
 from .labelling.label_runs import label_runs
 from .labelling.patch_files import write_labelled_patches
 from .labelling.scale import LabelConfig
-from .live_odometry import LiveOdometry
-from .live_step import LiveStep
+from .live.live_odometry import LiveOdometry
+from .live.live_step import LiveStep
 from .main_job import run_odometry
+from .region.footprint_parts import Rectangle
+from .region.warp import ground_view
 from .report.page import write_report
+from .result.run_result import RunResult
+from .result.switch_delay import switch_delays, true_stretches
 from .results import read_errors, write_results
-from .run_result import RunResult
-from .switch_delay import switch_delays, true_stretches
 from .synthetic import SynthesisConfig, synthesise
 from .texture import SFTA, sfta
-from .warp import ground_view
 
 __all__ = [
     "SFTA",

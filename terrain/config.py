@@ -8,8 +8,8 @@ from odometry.config import block_from_table, read_toml
 from odometry.errors import ConfigError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.evaluation.relative import EvaluationConfig
-from terrain.region import RegionConfig
-from terrain.switch import SwitchConfig
+from terrain.region.region import RegionConfig
+from terrain.switch.switch import SwitchConfig
 
 
 @dataclass(frozen=True)

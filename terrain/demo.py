@@ -9,8 +9,8 @@ from odometry.run import Run
 from terrain.classification.training import train
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
+from terrain.result.run_result import RunResult
 from terrain.results import write_results
-from terrain.run_result import RunResult
 
 WITH, WITHOUT = "with terrain classification", "without terrain classification"
 

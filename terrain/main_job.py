@@ -26,14 +26,14 @@ from odometry.run_terrains import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
-from terrain.contradictions import contradictions, labels_beneath
-from terrain.contradictions_so_far import Contradiction
-from terrain.evaluated import SecondReplay, is_used_by_filter
-from terrain.images_outside_replay import add_images_outside
-from terrain.new_terrain import learned_apart, new_spans
+from terrain.result.contradictions import contradictions, labels_beneath
+from terrain.result.contradictions_so_far import Contradiction
+from terrain.result.evaluated import SecondReplay, is_used_by_filter
+from terrain.result.new_terrain import learned_apart, new_spans
+from terrain.result.run_result import RunResult
 from terrain.run_presets import run_preset, with_preset
-from terrain.run_result import RunResult
-from terrain.sources import (
+from terrain.sources.images_outside_replay import add_images_outside
+from terrain.sources.sources import (
     BOTH,
     OWN_SOURCE,
     felt_of,
@@ -42,7 +42,7 @@ from terrain.sources import (
     source_name,
     terrain_source,
 )
-from terrain.watcher import TerrainWatcher
+from terrain.sources.watcher import TerrainWatcher
 
 if TYPE_CHECKING:
     from terrain.classification.trained import Classifier

@@ -25,17 +25,17 @@ from odometry.outputs.provenance import about_result
 from odometry.parameters import write_parameters
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.new_terrain import contradiction_columns
 from terrain.report import page
-from terrain.result_table import (
+from terrain.result.new_terrain import contradiction_columns
+from terrain.result.result_table import (
     COVARIANCE_COLUMNS,
     FORMAT,
     covariance_columns,
     reference_columns,
     result_table,
 )
-from terrain.run_result import RunResult
-from terrain.terrain_table import terrain_columns
+from terrain.result.run_result import RunResult
+from terrain.result.terrain_table import terrain_columns
 
 
 def write_run(result: RunResult, output: OutputFolder, reports: Sequence[CheckReport]) -> None:

@@ -7,8 +7,8 @@ from odometry.run import Run
 from odometry.run_span import Span
 from terrain.config import Config
 from terrain.main_job import run_odometry
-from terrain.run_result import RunResult
-from terrain.sources import source_name
+from terrain.result.run_result import RunResult
+from terrain.sources.sources import source_name
 
 FILES = ("model", "parameters", "modes", "feel")
 

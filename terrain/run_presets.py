@@ -11,11 +11,11 @@ from odometry.errors import ConfigError
 from odometry.estimation.config import PAPER
 from odometry.parameters import ParameterSet
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
-from terrain.region import NoRegion, predict_region
+from terrain.region.region import NoRegion, predict_region
 
 STRAIGHT = np.array([1.0, 0.0, 0.0])
 

@@ -14,7 +14,7 @@ from odometry.parameters import write_parameters
 from odometry.simulation.drive import Drive, simulate
 from odometry.simulation.ground import GroundMap, to_world
 from odometry.simulation.noise import ornstein_uhlenbeck
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.photos import (

@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from terrain.demo import WITH, WITHOUT, run_demo
-from terrain.run_result import RunResult
+from terrain.result.run_result import RunResult
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "notebooks/pictures"

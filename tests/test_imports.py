@@ -86,23 +86,26 @@ def test_models_do_not_import_what_uses_them():
         assert not rooms & set(users), name
 
 
-def test_rooms_of_the_gap_import_in_the_order_of_the_story():
-    story = ("prepare", "locate", "fit", "name", "answer", "show")
-    for name, targets in graph().items():
-        room = name.removeprefix("odometry.gap.").split(".")[0]
-        if room in story:
-            later = {f"odometry.gap.{other}" for other in story[story.index(room) + 1 :]}
-            assert not {target for target in targets if target.rpartition(".")[0] in later}, name
+ROOMS_IN_ORDER = {
+    "odometry.gap": ("prepare", "locate", "fit", "name", "answer", "show"),
+    "odometry.checks": (
+        *("findings", "evidence", "treads", "imu", "units", "copies", "stamps", "poses"),
+        *("settings", "unexplained"),
+    ),
+    "terrain": ("camera", "region", "image_labels", "switch", "sources", "result", "live"),
+}
 
 
-def test_rooms_of_the_checks_import_in_one_order():
-    order = ("findings", "evidence", "treads", "imu", "units", "copies", "stamps", "poses")
-    order += ("settings", "unexplained")
-    for name, targets in graph().items():
-        room = name.removeprefix("odometry.checks.").split(".")[0]
-        if name.startswith("odometry.checks.") and room in order:
-            later = {f"odometry.checks.{other}" for other in order[order.index(room) + 1 :]}
-            assert not {target for target in targets if target.rpartition(".")[0] in later}, name
+@pytest.mark.parametrize("package", ROOMS_IN_ORDER)
+def test_rooms_import_in_the_order_of_the_story(package):
+    story = [f"{package}.{room}" for room in ROOMS_IN_ORDER[package]]
+    for room in story:
+        files = {name: graph()[name] for name in graph() if name.startswith(f"{room}.")}
+        assert files, room
+        later = story[story.index(room) + 1 :]
+        for name, targets in files.items():
+            back = {target for target in targets if target.rpartition(".")[0] in later}
+            assert not back, name
 
 
 def test_only_the_command_line_imports_click_and_nobody_else_exits():

@@ -1,5 +1,6 @@
 """A connection to a Dask cluster with the versions of this process, and what its workers answer."""
 
+import gc
 import platform
 import threading
 import warnings
@@ -32,6 +33,9 @@ def connected(address: str) -> Iterator[Any]:
         If the scheduler cannot be reached, has no workers, or something has other versions.
     """
     distributed = extra_module("distributed", "dask", "--scheduler")
+    # A client that failed closes itself where it is collected; within the next one it would wait
+    # for ever for a lock that this one holds.
+    gc.collect()
     with warnings.catch_warnings():  # of other versions, which are checked below
         warnings.simplefilter("ignore")
         try:

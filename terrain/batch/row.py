@@ -14,7 +14,7 @@ from odometry.learned_parameters import MergedTerrain, learned_by_runs, merged_t
 from odometry.parameters import ParameterSet, read_parameters, write_parameters
 from terrain.batch.job import FAILED, Outcome
 from terrain.errors import ResultError
-from terrain.evaluation_notes import HARMLESS
+from terrain.result.evaluation_notes import HARMLESS
 
 JUDGED = ("odometer", "estimate", "gyroscope", "differential_drive")
 ERRORS = {

@@ -7,11 +7,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.run import Robot
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.trained import Classifier
-from terrain.footprint_parts import Rectangle
-from terrain.region import NoRegion, Region, RegionConfig, predict_region
-from terrain.warp import coarsest_m, scale_mismatch
+from terrain.region.footprint_parts import Rectangle
+from terrain.region.region import NoRegion, Region, RegionConfig, predict_region
+from terrain.region.warp import coarsest_m, scale_mismatch
 
 Motion = tuple[FloatArray, float]  # body twist (3,) and mean tread speed [m/s]
 STRAIGHT_ON: Motion = (np.array([1.0, 0.0, 0.0]), 1.0)

@@ -19,10 +19,10 @@ from terrain.calibration.mount_from_points import (
     read_marked_points,
 )
 from terrain.calibration.tracks import Tracks, tracker_of
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
+from terrain.camera.camera_values import finite_array
 from terrain.camera_files.lens_models import Lens
 from terrain.camera_files.transforms import ROBOT, mount_in, read_transforms
-from terrain.camera_values import finite_array
 from terrain.errors import CalibrationError, CameraError
 from terrain.main_job import run_odometry
 

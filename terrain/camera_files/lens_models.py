@@ -8,8 +8,8 @@ from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from odometry.arrays import FloatArray
-from terrain.camera_values import intrinsic_matrix, lens_coefficients, size_in_pixels
-from terrain.distortion import distort, radius_limit, undistort
+from terrain.camera.camera_values import intrinsic_matrix, lens_coefficients, size_in_pixels
+from terrain.camera.distortion import distort, radius_limit, undistort
 from terrain.errors import CameraError
 
 WIDEST_DEG = 80.0  # of rays off the axis: at 90 degrees a pinhole's image is infinitely large
@@ -20,7 +20,7 @@ MARGIN = 1.02  # the fit goes a little beyond the corners
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """Matrix and distortion, in the order and pixels of `[camera]`; see `terrain.camera.Camera`."""
+    """Matrix and distortion, in the order and pixels of `[camera]`; see `terrain.Camera`."""
 
     image_size: tuple[int, int]
     matrix: FloatArray

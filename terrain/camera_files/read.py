@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from odometry.io.structured import read_toml
+from terrain.camera.camera_values import finite_array
 from terrain.camera_files.lens_models import Calibration, Lens, lens_of
 from terrain.camera_files.transforms import rigid
 from terrain.camera_files.values import matrix, numbers, read_values
-from terrain.camera_values import finite_array
 from terrain.errors import CameraError
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.run import Robot, Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_files import spread
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
-from terrain.region import NoRegion, Region, RegionConfig, predict_region
+from terrain.region.region import NoRegion, Region, RegionConfig, predict_region
 
 TRIES = 5  # images that are opened until one can be read
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_files import spread
 from terrain.checks.terrain_views import FEWEST, Pixels, TerrainViews
 

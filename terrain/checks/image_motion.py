@@ -8,7 +8,7 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 from terrain.checks.image_stretches import image_stretches

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from odometry.checks.findings.finding import Finding, Level
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_files import SampledImage
 
 Size = tuple[int, int]

@@ -9,11 +9,11 @@ from odometry.arrays import BoolArray, IntArray
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.geometry import se2
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
-from terrain.still_image import StillImage
+from terrain.image_labels.still_image import StillImage
 
 FEWEST = 3  # pairs of images, one after the other: one that looks so may be chance
 SHOWN = 3  # stretches that are listed

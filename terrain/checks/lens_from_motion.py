@@ -11,12 +11,12 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level
 from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.tracks import Tracks
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
+from terrain.camera.distortion import undistort
 from terrain.checks.ground_steps import STEADY, GroundSteps, moved_terrain
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_files import spread
 from terrain.checks.terrain_views import Pixels
-from terrain.distortion import undistort
 
 # Terrain that changes its size from image to image, of 1 and in standard deviations of the median:
 # right cameras have 0.012 and 2.5 (rocking ones, and some that look steeply, included)

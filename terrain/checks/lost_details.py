@@ -9,11 +9,11 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.findings.finding import Finding, Level
 from odometry.geometry import se2
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import APART_S, pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
-from terrain.terrain_details import change_of_details, details_of_tiles
+from terrain.image_labels.terrain_details import change_of_details, details_of_tiles
 
 # Logarithm of details over light: another gamma (0.6) has -0.4 to -0.64, fog -0.9 to -1.4
 HALF = float(np.log(2.0))

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.findings.finding import Finding, Level
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import STEADY
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.lens_from_motion import fitted_pitch

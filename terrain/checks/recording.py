@@ -13,7 +13,8 @@ from odometry.checks.recording import check_recording
 from odometry.errors import RunFolderError
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
+from terrain.camera.distortion import undistort
 from terrain.checks.drawn_images import straight_ahead
 from terrain.checks.image_files import (
     DECODED,
@@ -31,10 +32,9 @@ from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
 from terrain.checks.region_ahead import region_ahead, vision_model
 from terrain.classification.classifier import TerrainClassifier
-from terrain.distortion import undistort
 from terrain.errors import CameraError
-from terrain.region import Region
-from terrain.warp import pixel_view
+from terrain.region.region import Region
+from terrain.region.warp import pixel_view
 
 
 def check_run(

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Robot, Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.drawn_images import RunRegions, run_regions, straight_ahead
 from terrain.checks.other_cameras import (
     Reading,
@@ -20,8 +20,8 @@ from terrain.checks.other_cameras import (
 )
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
-from terrain.region import NoRegion, Region, RegionConfig
-from terrain.warp import scale_mismatch
+from terrain.region.region import NoRegion, Region, RegionConfig
+from terrain.region.warp import scale_mismatch
 
 HORIZON_M = 1e4
 USUAL_HEIGHT_M = (0.2, 3.0)  # of cameras on skid-steer robots

@@ -8,11 +8,11 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.io.files import read_bytes
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_files import MOST_BYTES
 from terrain.errors import ImageError
+from terrain.image_labels.still_image import details_of
 from terrain.image_size import stated_size
-from terrain.still_image import details_of
 
 WIDTH_PX = 320  # larger images are reduced to it: their details say no more of the motion
 REDUCED = {

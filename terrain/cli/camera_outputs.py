@@ -12,9 +12,9 @@ from odometry.run import Run
 from terrain.calibration.camera_table import camera_text
 from terrain.calibration.lens_sources import first_image
 from terrain.calibration.look_ahead import run_region
+from terrain.camera.distortion import distort
 from terrain.checks.drawn_images import shown_images
-from terrain.distortion import distort
-from terrain.region import NoRegion, Region
+from terrain.region.region import NoRegion, Region
 from terrain.report.ground_plots import (
     write_board_figure,
     write_flow_figure,

@@ -13,11 +13,11 @@ from odometry.run import Robot, Run
 from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m, suggest_pitch
 from terrain.calibration.mount_fit import NAMES
 from terrain.calibration.mount_sources import MountSource
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_motion import image_motion
 from terrain.checks.region_ahead import no_mount, region_ahead
 from terrain.classification.trained import Classifier
-from terrain.region import NoRegion, RegionConfig
+from terrain.region.region import NoRegion, RegionConfig
 
 if TYPE_CHECKING:
     from terrain.calibration.lens_sources import LensSource

@@ -83,7 +83,7 @@ def _read(folder: Path, given: Mapping[str, Path], axes: str, times: Path | None
     """Errors of one folder; what went wrong where they cannot be read."""
     from odometry.errors import OdometryError
     from odometry.outputs.written_tables import changes_of
-    from terrain.other_odometry import other_errors
+    from terrain.other_odometry.other_odometry import other_errors
     from terrain.results import read_errors
 
     try:

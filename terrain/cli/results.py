@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from terrain.run_result import RunResult
+    from terrain.result.run_result import RunResult
 
 MOST_CHANGES = 6  # of the terrain in force, that are printed
 HEADER = (
@@ -38,7 +38,7 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 def _beside_errors(result: "RunResult") -> list[str]:
     """What the table does not hold: how the estimate is evaluated, and what else to note."""
-    from terrain.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with, remarks
+    from terrain.result.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with, remarks
 
     second = result.second
     how = [] if second is None else [f"The estimate is evaluated with {evaluated_with(second)}"]
@@ -136,7 +136,7 @@ def learned_advice(
     preset : str, optional
         A published system knows no parameter sets.
     """
-    from terrain.evaluation_notes import misleading
+    from terrain.result.evaluation_notes import misleading
 
     if preset is not None or not result.has_learned:
         return None

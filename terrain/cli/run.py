@@ -147,10 +147,10 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
         print_image_labels,
         print_written,
     )
-    from terrain.new_terrain import contradiction_lines
-    from terrain.result_table import image_label_counts
+    from terrain.result.new_terrain import contradiction_lines
+    from terrain.result.result_table import image_label_counts
+    from terrain.result.run_notes import event_lines, run_notes
     from terrain.results import write_run
-    from terrain.run_notes import event_lines, run_notes
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)

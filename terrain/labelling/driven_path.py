@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from terrain.place_labels import Footprint
+from terrain.switch.place_labels import Footprint
 
 STEP_M = 0.03  # of wheel travel, between the poses of a way
 

@@ -10,7 +10,7 @@ import numpy as np
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.run_terrains import NamedTerrain
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections
 from terrain.labelling.driven_path import DrivenWay

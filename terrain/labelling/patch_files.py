@@ -11,12 +11,12 @@ from tqdm import tqdm
 from odometry.arrays import ByteImage
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.labelling.corrections import Corrections
 from terrain.labelling.label_runs import ChosenSquare, LabelledTerrain
-from terrain.warp import ground_view
+from terrain.region.warp import ground_view
 
 TILE_PX, CAPTION_PX, GAP_PX = 128, 16, 4
 COLUMNS = 10

@@ -11,8 +11,8 @@ from odometry.config import require, require_positive
 from terrain.classification.training import LARGEST_PATCH_PX
 from terrain.errors import PatchError
 from terrain.labelling.squares import SquareFinder
-from terrain.region import RegionConfig
-from terrain.warp import ground_sampling_m
+from terrain.region.region import RegionConfig
+from terrain.region.warp import ground_sampling_m
 
 SIDE = 0.6  # of the width of the footprint
 SMALLEST_PX = 32

@@ -14,10 +14,10 @@ from odometry.run import Run
 from odometry.table import Table
 from odometry.trajectory import Trajectory
 from odometry.windows.gaps import odometry_gaps
-from terrain.camera import Camera
-from terrain.footprint_parts import Rectangle, is_visible
+from terrain.camera.camera import Camera
 from terrain.labelling.driven_path import DrivenWay, Passing
-from terrain.region import RegionConfig
+from terrain.region.footprint_parts import Rectangle, is_visible
+from terrain.region.region import RegionConfig
 
 
 def place_centres(middles_m: FloatArray, apart_m: float) -> FloatArray:

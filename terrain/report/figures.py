@@ -17,8 +17,8 @@ from odometry.report.plots import (
     plot_position_errors,
 )
 from terrain.report.lines import ICR_COORDINATES, ReportLines
-from terrain.run_result import RunResult
-from terrain.switch_delay import true_stretches
+from terrain.result.run_result import RunResult
+from terrain.result.switch_delay import true_stretches
 
 _WIDTH_IN = 7.0
 _LEFT, _RIGHT = 0.115, 0.75  # of the width; labels stand to the right

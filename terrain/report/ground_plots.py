@@ -16,11 +16,11 @@ from odometry.run import Robot
 from terrain.calibration.chessboard import BoardViews
 from terrain.calibration.lens_from_boards import LensFit
 from terrain.calibration.mount_from_points import MarkedPoints
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.drawn_images import ShownImage
-from terrain.region import Rectangle, Region
+from terrain.region.region import Rectangle, Region
+from terrain.region.whole_image import outline
 from terrain.report.plots import draw_outline, plot_image
-from terrain.whole_image import outline
 
 GRID = "#FFFFFF"
 FOOTPRINT, REGION = "footprint", "region ahead"

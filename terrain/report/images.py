@@ -7,17 +7,17 @@ from matplotlib.figure import Figure
 
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.trained import Classifier
-from terrain.image_label import ImageLabel
+from terrain.image_labels.image_label import ImageLabel
 from terrain.images import read_image
+from terrain.region.whole_image import classify_ground
 from terrain.report.figures import Tints, in_force
 from terrain.report.labels_and_truth import Confusion, around_switches
 from terrain.report.plots import draw_cells, draw_region, plot_confusion, plot_image, plot_labels
-from terrain.run_result import RunResult
-from terrain.switch_delay import true_stretches
-from terrain.watcher import TerrainWatcher
-from terrain.whole_image import classify_ground
+from terrain.result.run_result import RunResult
+from terrain.result.switch_delay import true_stretches
+from terrain.sources.watcher import TerrainWatcher
 
 _WIDTH_IN = 7.0
 _PHOTO_DPI = 120

@@ -8,10 +8,10 @@ import numpy as np
 from odometry.arrays import IntArray
 from odometry.evaluation.stretches import terrain_at
 from odometry.run import UNKNOWN
-from terrain.image_label import ImageLabel
-from terrain.run_result import RunResult
-from terrain.switch import SwitchEvent
-from terrain.switch_delay import true_stretches
+from terrain.image_labels.image_label import ImageLabel
+from terrain.result.run_result import RunResult
+from terrain.result.switch_delay import true_stretches
+from terrain.switch.switch import SwitchEvent
 
 
 @dataclass(frozen=True)

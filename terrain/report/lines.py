@@ -12,8 +12,8 @@ from odometry.models.catalogue import ICR_NAMES
 from odometry.report.figure import REFERENCE_STYLE, LineStyle, line_styles
 from odometry.report.labels import broken_at_outages, thinned_rows
 from odometry.trajectory import Trajectory
-from terrain.evaluated import EvaluatedTrajectory
-from terrain.run_result import RunResult
+from terrain.result.evaluated import EvaluatedTrajectory
+from terrain.result.run_result import RunResult
 
 LABELS = {
     "differential_drive": "differential drive",

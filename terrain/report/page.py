@@ -7,9 +7,6 @@ from odometry.checks.findings.finding import CheckReport
 from odometry.report.before_use import before_use
 from odometry.report.figure import terrain_colours
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
-from terrain.evaluation_notes import advice
-from terrain.label_confusion import label_confusions
-from terrain.new_terrain import contradiction_lines
 from terrain.report.figures import (
     Tints,
     distribution_picture,
@@ -35,10 +32,13 @@ from terrain.report.tables import (
     uncertainty_grid,
 )
 from terrain.report.words import headline, notes
-from terrain.run_notes import run_notes
-from terrain.run_result import RunResult
-from terrain.sources import SOURCE_WORDS
-from terrain.switch_delay import true_stretches
+from terrain.result.evaluation_notes import advice
+from terrain.result.label_confusion import label_confusions
+from terrain.result.new_terrain import contradiction_lines
+from terrain.result.run_notes import run_notes
+from terrain.result.run_result import RunResult
+from terrain.result.switch_delay import true_stretches
+from terrain.sources.sources import SOURCE_WORDS
 
 Block = Paragraph | Listing | Grid | Picture
 

@@ -10,9 +10,9 @@ from matplotlib.patheffects import withStroke
 from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.evaluation.stretches import Stretch
 from odometry.run import UNKNOWN
-from terrain.camera import Camera
-from terrain.image_label import ImageLabel
-from terrain.whole_image import Cell, outline
+from terrain.camera.camera import Camera
+from terrain.image_labels.image_label import ImageLabel
+from terrain.region.whole_image import Cell, outline
 
 NO_LABEL = "no label"
 _SHORTEST_NAMED = 0.05  # of the time axis: the name would not fit

@@ -9,11 +9,11 @@ from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
 from odometry.report.html import Grid
 from odometry.run import UNKNOWN
-from terrain.evaluation_notes import not_checked, verdict
 from terrain.report.lines import ICR_COORDINATES, ReportLines
-from terrain.run_result import RunResult, TerrainChange
-from terrain.switch import SwitchEvent
-from terrain.switch_delay import SwitchDelay, switch_delays, true_stretches
+from terrain.result.evaluation_notes import not_checked, verdict
+from terrain.result.run_result import RunResult, TerrainChange
+from terrain.result.switch_delay import SwitchDelay, switch_delays, true_stretches
+from terrain.switch.switch import SwitchEvent
 
 NOTHING = "\N{EN DASH}"
 

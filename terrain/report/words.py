@@ -5,7 +5,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from odometry.evaluation.score import Score
-from terrain.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
 from terrain.report.lines import (
     GYROSCOPE,
     IDEAL,
@@ -15,8 +14,9 @@ from terrain.report.lines import (
     other_odometer,
 )
 from terrain.report.tables import number
-from terrain.run_result import RunResult
-from terrain.switch_delay import true_stretches
+from terrain.result.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
+from terrain.result.run_result import RunResult
+from terrain.result.switch_delay import true_stretches
 
 
 def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:

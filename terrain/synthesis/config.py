@@ -11,7 +11,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.io.structured import read_toml
 from odometry.simulation.commands import WeavingDriver
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import SynthesisError
 
 LIMITS = {  # a run of a day, in steps that are worth it

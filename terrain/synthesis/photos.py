@@ -11,15 +11,15 @@ from odometry.arrays import ByteImage
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.simulation.ground import GroundMap
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.patches import LabelledPhoto, find_photos
 from terrain.errors import SynthesisError, TerrainError
 from terrain.images import read_image, to_grey
-from terrain.region import Rectangle
+from terrain.region.region import Rectangle
+from terrain.region.warp import ground_view
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.texture import Texture
 from terrain.synthesis.view import Illumination, Scene, View, encode_jpeg, expose, jpeg_image
-from terrain.warp import ground_view
 
 BUILT_IN = ("brick", "grass", "gravel")
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.simulation.ground import GroundMap, to_world
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import SynthesisError
 from terrain.synthesis.texture import Texture
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from terrain.calibration.mount_from_points import mount_from_points, read_marked_points
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.camera_files.lens_models import Lens
 from terrain.camera_files.read import read_calibration
 from terrain.camera_files.transforms import mount_in, read_transforms

@@ -19,7 +19,7 @@ from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
 from odometry.windows.windows import windows_of
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.evaluate import _rows

@@ -28,7 +28,7 @@ from terrain.calibration.chessboard import Chessboard, find_boards, photo_files
 from terrain.calibration.lens_from_boards import lens_from_boards
 from terrain.calibration.mount_from_points import MarkedPoints, mount_from_points
 from terrain.calibration.mount_sources import mount_of_motion
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
 from terrain.synthetic import SynthesisConfig, synthesise

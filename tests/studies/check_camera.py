@@ -17,15 +17,15 @@ import numpy as np
 from odometry.checks.findings.finding import Level
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.camera import Camera
-from terrain.camera_values import homography_of_mount
+from terrain.camera.camera import Camera
+from terrain.camera.camera_values import homography_of_mount
 from terrain.checks.drawn_images import straight_ahead
 from terrain.checks.image_files import SampledImage
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.recording import lens
 from terrain.checks.region_ahead import region_ahead
 from terrain.errors import CameraError
-from terrain.region import NoRegion
+from terrain.region.region import NoRegion
 
 RIGHT = ("none", "none, homography")
 ALIASES = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x right, y forward

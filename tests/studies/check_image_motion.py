@@ -21,7 +21,7 @@ import numpy as np
 
 from odometry.run import Run
 from odometry.simulation.commands import WeavingDriver
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.image_motion import image_motion
 from terrain.synthetic import SynthesisConfig, synthesise
 

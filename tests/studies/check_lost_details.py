@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.lost_details import lost_details
 from terrain.checks.terrain_views import TerrainViews
 from tests.studies.check_image_motion import made

@@ -24,8 +24,8 @@ from odometry.pipeline import replay
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config
-from terrain.feel_labels import FeelLabels
-from terrain.image_label import ImageLabel
+from terrain.image_labels.image_label import ImageLabel
+from terrain.switch.feel_labels import FeelLabels
 from tests.studies.switching_courses import LabellingWatcher, make_course
 
 ZONES = ("gravel", "grass", "brick", "gravel", "brick", "grass")

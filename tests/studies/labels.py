@@ -27,12 +27,12 @@ from tqdm import tqdm
 from odometry.run import Run
 from terrain.classification.patches import find_photos
 from terrain.classification.training import train
-from terrain.label_confusion import label_confusions
 from terrain.labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.patch_files import write_labelled_patches
 from terrain.main_job import RunResult, run_odometry
-from terrain.switch_delay import switch_delays
+from terrain.result.label_confusion import label_confusions
+from terrain.result.switch_delay import switch_delays
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthetic import synthesise
 

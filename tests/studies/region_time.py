@@ -19,14 +19,14 @@ from odometry.estimation.icr_ekf import IcrEkf
 from odometry.parameters import read_parameters
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.training import train
 from terrain.config import Config
 from terrain.images import read_image
-from terrain.region import NoRegion, Rectangle, predict_region
+from terrain.region.region import NoRegion, Rectangle, predict_region
+from terrain.region.warp import ground_view
+from terrain.region.whole_image import classify_ground
 from terrain.synthetic import synthesise
-from terrain.warp import ground_view
-from terrain.whole_image import classify_ground
 
 
 def main() -> None:

@@ -27,15 +27,15 @@ import yaml
 from odometry.geometry import se2
 from odometry.run import Robot, Run
 from odometry.simulation.commands import WeavingDriver
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.drawn_images import motion_at
 from terrain.classification.training import train
 from terrain.images import read_image
 from terrain.main_job import run_odometry
-from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
+from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
+from terrain.region.warp import coarsest_m, ground_view, scale_mismatch
 from terrain.synthesis.config import SynthesisConfig, default_camera
 from terrain.synthetic import synthesise
-from terrain.warp import coarsest_m, ground_view, scale_mismatch
 
 PATCHES = SimpleNamespace(metres_per_pixel=0.003, patch_size_px=96)
 WHOLE, DEFAULT = RegionConfig(least_share=1.0), RegionConfig()

@@ -26,7 +26,7 @@ from odometry.run import Run
 from terrain.classification.training import train
 from terrain.config import Config
 from terrain.main_job import RunResult, run_odometry
-from terrain.switch_delay import SwitchDelay, switch_delays
+from terrain.result.switch_delay import SwitchDelay, switch_delays
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthetic import synthesise
 

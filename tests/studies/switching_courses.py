@@ -20,13 +20,13 @@ from odometry.simulation.commands import WeavingDriver
 from odometry.simulation.drive import Drive, simulate
 from odometry.simulation.ground import GroundMap, footprint_points, to_world
 from odometry.simulation.noise import ornstein_uhlenbeck
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.config import Config
-from terrain.image_label import ImageLabel
-from terrain.region import NoRegion, predict_region
+from terrain.image_labels.image_label import ImageLabel
+from terrain.region.region import NoRegion, predict_region
+from terrain.sources.watcher import TerrainWatcher
 from terrain.synthesis.config import SynthesisConfig
 from terrain.synthesis.records import identified_parameters, motion_tables, run_settings
-from terrain.watcher import TerrainWatcher
 
 MOST_S = 900.0
 SPIN_M_S, REVERSE_M_S, REST_S = 0.5, 0.5, 0.5

@@ -15,8 +15,8 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.geometry import se2
-from terrain.place_labels import Footprint, PlaceLabel
-from terrain.switch import Switch, SwitchConfig
+from terrain.switch.place_labels import Footprint, PlaceLabel
+from terrain.switch.switch import Switch, SwitchConfig
 from tests.terrain.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
 
 WAYS = {"ahead": {"manoeuvres": (forward,)}, "spins and reversals": {}}

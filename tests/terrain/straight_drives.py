@@ -5,8 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from terrain.place_labels import Footprint, PlaceLabel
-from terrain.switch import Switch, SwitchConfig
+from terrain.switch.place_labels import Footprint, PlaceLabel
+from terrain.switch.switch import Switch, SwitchConfig
 
 FOOTPRINT = Footprint(0.5, 0.5)  # regions are of 0.6 m by 0.6 m
 AHEAD_M = 1.0

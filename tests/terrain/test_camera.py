@@ -6,8 +6,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from terrain.camera import Camera
-from terrain.distortion import distort, radius_limit
+from terrain.camera.camera import Camera
+from terrain.camera.distortion import distort, radius_limit
 from terrain.errors import CameraError
 
 MATRIX = [[410.0, 0.0, 322.0], [0.0, 400.0, 236.0], [0.0, 0.0, 1.0]]

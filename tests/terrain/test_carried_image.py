@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.geometry import se2
-from terrain.carried_image import carried_back, middles, terrain_after, tiles
+from terrain.image_labels.carried_image import carried_back, middles, terrain_after, tiles
 from tests.terrain.test_still_image import SIZE, STEP, down, seen, terrain
 
 __all__ = ["terrain"]

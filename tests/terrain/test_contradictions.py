@@ -12,13 +12,13 @@ from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import NamedTerrain
 from odometry.table import Table
 from odometry.trajectory import Trajectory
-from terrain.contradictions import Beneath, contradictions, labels_beneath, moments_of
-from terrain.contradictions_so_far import LASTS_S
-from terrain.image_label import ImageLabel
+from terrain.image_labels.image_label import ImageLabel
 from terrain.main_job import run_odometry
-from terrain.new_terrain import contradiction_lines, new_name
-from terrain.region import Rectangle, Region
+from terrain.region.region import Rectangle, Region
 from terrain.report.page import write_report
+from terrain.result.contradictions import Beneath, contradictions, labels_beneath, moments_of
+from terrain.result.contradictions_so_far import LASTS_S
+from terrain.result.new_terrain import contradiction_lines, new_name
 from terrain.results import write_results
 from tests.odometry.feel.feel_drives import drive, drives, model_of_three
 from tests.terrain.test_feel_labels import joined

@@ -4,7 +4,7 @@ import pytest
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
-from terrain.evaluation_notes import remarks, simple_is_better, worse_at_the_end
+from terrain.result.evaluation_notes import remarks, simple_is_better, worse_at_the_end
 
 
 def scores(**errors):

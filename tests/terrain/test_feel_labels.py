@@ -10,9 +10,9 @@ from odometry.feel.follow import follow_feel
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config
-from terrain.feel_labels import FeelLabels, widened
 from terrain.main_job import run_odometry
-from terrain.switch import SwitchConfig
+from terrain.switch.feel_labels import FeelLabels, widened
+from terrain.switch.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, model_of_three
 
 NAMES = ["tiles", "gravel", "snow"]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.estimation.filter_event import FilterEvent
-from terrain.evaluation_notes import event_line, filter_table, misleading
 from terrain.main_job import run_odometry
+from terrain.result.evaluation_notes import event_line, filter_table, misleading
 
 YAW = FilterEvent("initial_yaw", 0.0, 6.5, "initial yaw 12.0 degrees", (0.2, 0.01))
 ANEW = FilterEvent("reinitialised", 8.0, 8.0, "it started anew")

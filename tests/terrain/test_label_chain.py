@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from terrain.label_chain import UNNAMED, carried, given_to, smoothed
-from terrain.place_beliefs import terrains_by_rows
+from terrain.switch.label_chain import UNNAMED, carried, given_to, smoothed
+from terrain.switch.place_beliefs import terrains_by_rows
 
 CHANGE_M = 4.0
 

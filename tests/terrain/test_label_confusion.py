@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from terrain.label_confusion import LabelConfusion, label_confusion_table, label_confusions
 from terrain.main_job import run_odometry
 from terrain.report.page import label_table
+from terrain.result.label_confusion import LabelConfusion, label_confusion_table, label_confusions
 from tests.odometry.modes.mode_drives import run_of_tables
 
 LABELS = ["ice", "mud", "", "unknown", "ice", "ice"]

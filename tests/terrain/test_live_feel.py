@@ -14,12 +14,12 @@ from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.table import Table
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
-from terrain.live_odometry import LiveOdometry
+from terrain.live.live_odometry import LiveOdometry
 from terrain.main_job import run_odometry
-from terrain.switch import SwitchConfig
+from terrain.switch.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 from tests.terrain.conftest import METRES_PER_PIXEL
 from tests.terrain.test_feel_labels import joined

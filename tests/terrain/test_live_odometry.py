@@ -15,10 +15,10 @@ from odometry.frames import Frame
 from odometry.live_frames import LiveFrames
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot, Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.config import Config
 from terrain.images import decode_image
-from terrain.live_odometry import LiveOdometry
+from terrain.live.live_odometry import LiveOdometry
 from terrain.main_job import run_odometry
 from terrain.results import write_results
 from tests.odometry.bags.imports import imported

@@ -13,7 +13,7 @@ from odometry.evaluation.score import reference_of
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from terrain.config import Config
-from terrain.run_result import RunResult
+from terrain.result.run_result import RunResult
 
 MOST_BYTES = 175  # a row: 10 million of them, and 250 MB of libraries, are 2 GB
 STEP_S, EVERY = 0.02, 50  # a pose every second

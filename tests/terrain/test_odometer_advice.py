@@ -6,7 +6,7 @@ import pytest
 from odometry.evaluation.odometer_noise import USUAL_NOISE
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
-from terrain.evaluation_notes import advice, not_checked, verdict
+from terrain.result.evaluation_notes import advice, not_checked, verdict
 
 
 def check(mean, distance_m=5.0):

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
 from odometry.run import Robot
-from terrain.camera import Camera
-from terrain.region import NoRegion, Rectangle, RegionConfig, predict_region
+from terrain.camera.camera import Camera
+from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from tests.terrain.regions import (
     AHEAD,
     ALL_ROUND,

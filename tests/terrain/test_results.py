@@ -9,7 +9,7 @@ import pytest
 from odometry.io.trajectory_files import read_trajectory
 from odometry.parameters import read_parameters
 from terrain.main_job import run_odometry
-from terrain.result_table import result_table
+from terrain.result.result_table import result_table
 from terrain.results import write_results
 from tests.terrain.output_tables import TERRAIN, columns, numbers, strict
 

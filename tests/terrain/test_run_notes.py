@@ -7,8 +7,8 @@ import numpy as np
 from odometry.estimation.filter_event import FilterEvent
 from terrain.classification.likeness import Likeness
 from terrain.classification.no_ground import SKY
-from terrain.image_label import ASTRIDE
-from terrain.run_notes import event_lines, run_notes
+from terrain.image_labels.image_label import ASTRIDE
+from terrain.result.run_notes import event_lines, run_notes
 
 
 def result(initial="gravel", tables=("gravel",), classes=None, *, refused=0, events=()):

@@ -11,7 +11,7 @@ from odometry.parameters import ParameterSet, TerrainParameters, write_parameter
 from odometry.run import Run
 from terrain.config import Config
 from terrain.main_job import run_odometry
-from terrain.region import RegionConfig
+from terrain.region.region import RegionConfig
 
 SET = ParameterSet(
     {

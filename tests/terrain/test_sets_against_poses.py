@@ -13,7 +13,7 @@ from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.motion import level_path
-from terrain.sets_against_poses import sentences, sets_against_poses
+from terrain.result.sets_against_poses import sentences, sets_against_poses
 
 RIGHT = {"y_left": 0.45, "y_right": -0.42, "x_icr": -0.05}
 AT_S = 0.05 * np.arange(1600)

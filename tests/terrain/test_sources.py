@@ -16,7 +16,7 @@ from terrain.cli import run as run_verb
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results
-from terrain.sources import SOURCES, source_name
+from terrain.sources.sources import SOURCES, source_name
 from tests.odometry.modes.mode_drives import velocity_run
 from tests.odometry.modes.test_terrain_source import NAMES, SET, A, B
 

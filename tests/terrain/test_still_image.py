@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from odometry.geometry import se2
-from terrain.camera import Camera
-from terrain.still_image import StillImage, StillWatch, details_of
+from terrain.camera.camera import Camera
+from terrain.image_labels.still_image import StillImage, StillWatch, details_of
 
 SIZE = (320, 240)
 MATRIX = [[230, 0, 159.5], [0, 230, 119.5], [0, 0, 1]]

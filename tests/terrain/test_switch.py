@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
-from terrain.switch import SwitchConfig
+from terrain.switch.switch import SwitchConfig
 from tests.terrain.straight_drives import (
     AHEAD_M,
     BOTH_RULES,

@@ -8,9 +8,9 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.place_labels import PlaceLabel
-from terrain.switch import SwitchEvent
-from terrain.switch_delay import SwitchDelay, switch_delays, true_changes, true_stretches
+from terrain.result.switch_delay import SwitchDelay, switch_delays, true_changes, true_stretches
+from terrain.switch.place_labels import PlaceLabel
+from terrain.switch.switch import SwitchEvent
 
 STAMPS_S = np.arange(0.0, 20.5, 0.5)
 ROWS = np.arange(len(STAMPS_S)) + 2

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from terrain.place_labels import DRIFT, Footprint
+from terrain.switch.place_labels import DRIFT, Footprint
 from tests.terrain.straight_drives import (
     AHEAD_M,
     BOTH_RULES,

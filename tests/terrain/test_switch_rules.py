@@ -6,8 +6,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from terrain.place_labels import DRIFT, Footprint, PlaceLabel
-from terrain.switch import Switch, SwitchConfig
+from terrain.switch.place_labels import DRIFT, Footprint, PlaceLabel
+from terrain.switch.switch import Switch, SwitchConfig
 
 FOOTPRINT = Footprint(0.6, 0.5)
 

@@ -15,7 +15,7 @@ from odometry.feel.windows import feel_windows
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.ground import GroundMap
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.patches import find_photos
 from terrain.cli.synthesise import synthesise as command
 from terrain.errors import SynthesisError

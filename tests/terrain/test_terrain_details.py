@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.terrain_details import (
+from terrain.image_labels.terrain_details import (
     LOSS,
     WIDTH_PX,
     DetailsWatch,

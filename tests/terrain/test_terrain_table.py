@@ -9,7 +9,7 @@ import pytest
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.main_job import run_odometry
-from terrain.region import RegionConfig
+from terrain.region.region import RegionConfig
 from terrain.results import write_results
 from tests.terrain.output_tables import TERRAIN, columns, strict
 

@@ -6,7 +6,7 @@ import pytest
 from odometry.evaluation.odometer_noise import USUAL_NOISE
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
-from terrain.result_table import covariance_columns, uncertainty_table
+from terrain.result.result_table import covariance_columns, uncertainty_table
 
 
 def test_columns_hold_deviations_and_covariances():

@@ -10,9 +10,9 @@ from terrain.cli.results import print_changes
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.report.tables import switch_table
-from terrain.result_table import result_table
-from terrain.run_result import RunResult
-from terrain.switch import SwitchConfig, SwitchEvent
+from terrain.result.result_table import result_table
+from terrain.result.run_result import RunResult
+from terrain.switch.switch import SwitchConfig, SwitchEvent
 
 LABEL = SimpleNamespace(stamp_s=4.0, distance_ahead_m=1.0)
 

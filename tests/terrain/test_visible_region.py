@@ -5,11 +5,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import terrain.region as region_file
+import terrain.region.region as region_file
 from odometry.geometry import se2
-from terrain.camera import Camera
-from terrain.footprint_parts import footprint_parts, visible_shares
-from terrain.region import NoRegion, Region, RegionConfig, predict_region
+from terrain.camera.camera import Camera
+from terrain.region.footprint_parts import footprint_parts, visible_shares
+from terrain.region.region import NoRegion, Region, RegionConfig, predict_region
 from tests.terrain.regions import (
     AHEAD,
     MATRIX,

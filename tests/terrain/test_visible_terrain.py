@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from terrain.camera import Camera
-from terrain.footprint_parts import CELLS, Rectangle, is_visible, largest_visible
+from terrain.camera.camera import Camera
+from terrain.region.footprint_parts import CELLS, Rectangle, is_visible, largest_visible
 
 MATRIX = [[300.0, 0.0, 320.0], [0.0, 300.0, 240.0], [0.0, 0.0, 1.0]]
 AHEAD = Camera.from_mount((640, 480), MATRIX, [-0.1, 0.02, 0, 0], [0.3, 0.0, 0.9, 0.0, 0.8, 0.0])

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.camera import Camera
-from terrain.region import Rectangle
-from terrain.warp import ground_sampling_m, ground_view, pixel_view, view_shape
+from terrain.camera.camera import Camera
+from terrain.region.region import Rectangle
+from terrain.region.warp import ground_sampling_m, ground_view, pixel_view, view_shape
 
 RECTANGLE = Rectangle(0.55, 0.95, -0.15, 0.2)
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from odometry.run import UNKNOWN
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError, TerrainError
-from terrain.warp import ground_sampling_m
-from terrain.whole_image import classify_ground, outline, visible_cells
+from terrain.region.warp import ground_sampling_m
+from terrain.region.whole_image import classify_ground, outline, visible_cells
 
 SIZE_M = 0.1
 

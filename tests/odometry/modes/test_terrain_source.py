@@ -11,7 +11,7 @@ from odometry.modes.mode_set import ModeSet
 from odometry.modes.track import ModesConfig
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
-from terrain.sources import felt_terrain
+from terrain.sources.sources import felt_terrain
 from tests.odometry.modes.mode_drives import velocity_run
 
 NAMES = ("ice", "tar")

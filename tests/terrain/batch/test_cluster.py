@@ -1,6 +1,8 @@
 """Runs replayed by a Dask cluster."""
 
+import gc
 import os
+import weakref
 
 import pytest
 
@@ -83,3 +85,24 @@ def test_a_scheduler_that_does_not_answer_is_reported_in_one_line(
     message = refused([job_of(curvy_run)], address)
     assert message.startswith(f"--scheduler {address}: no scheduler answers there")
     assert "dask scheduler" in message
+
+
+def test_a_client_that_failed_is_gone_before_the_next_one(job_of, curvy_run, monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    made, left = [], []
+
+    class Watched(distributed.Client):
+        def __init__(self, *arguments, **options):
+            left.append(sum(one() is not None for one in made))
+            made.append(weakref.ref(self))
+            super().__init__(*arguments, **options)
+
+    monkeypatch.setattr(distributed, "Client", Watched)
+    monkeypatch.setattr("terrain.batch.connection.CONNECTS_S", 0.2)
+    gc.disable()
+    try:
+        for _ in range(2):
+            refused([job_of(curvy_run)], "tcp://127.0.0.1:9")
+    finally:
+        gc.enable()
+    assert left == [0, 0]

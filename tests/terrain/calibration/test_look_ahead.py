@@ -11,8 +11,8 @@ from terrain.calibration.look_ahead import (
     pitched,
     suggest_pitch,
 )
-from terrain.camera import Camera
-from terrain.region import NoRegion
+from terrain.camera.camera import Camera
+from terrain.region.region import NoRegion
 
 ROBOT = Robot(track_width=0.4, length=0.5, width=0.5)
 MATRIX = [[400.0, 0.0, 319.5], [0.0, 400.0, 239.5], [0.0, 0.0, 1.0]]

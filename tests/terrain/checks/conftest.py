@@ -8,7 +8,7 @@ import pytest
 
 import odometry
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.recording import check_run
 from terrain.checks.terrain_views import TerrainViews
 

@@ -9,7 +9,7 @@ import pytest
 
 import terrain
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion

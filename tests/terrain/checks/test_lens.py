@@ -2,7 +2,7 @@
 
 import pytest
 
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.recording import lens
 
 MOUNT = [0.0, 0.0, 1.0, 0.0, 0.6, 0.0]

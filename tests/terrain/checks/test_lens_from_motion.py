@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks import image_motion as image_motion_module
 from terrain.checks import lens_from_motion
 from terrain.checks.ground_steps import GroundSteps

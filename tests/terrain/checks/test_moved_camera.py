@@ -9,7 +9,7 @@ import pytest
 
 import odometry
 from odometry.run import Run
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import ground_steps
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_motion import image_motion

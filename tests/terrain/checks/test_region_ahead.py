@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import Level
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 
 X, Y, Z, ROLL, PITCH, YAW = 0.2, 0.0, 0.55, 0.01, 0.85, 0.02
 PLACE = [X, Y, Z]

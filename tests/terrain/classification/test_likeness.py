@@ -14,7 +14,7 @@ from terrain.classification.look import look_of
 from terrain.classification.model_file import read_model, write_model
 from terrain.cli.classify import classify
 from terrain.errors import ModelFileError
-from terrain.image_labeller import WORTH_OF_UNLIKE, RunLikeness
+from terrain.image_labels.image_labeller import WORTH_OF_UNLIKE, RunLikeness
 
 
 def texture(rng, grain_px, size=64, spread=35):

@@ -23,7 +23,7 @@ from terrain.classification.no_ground import (
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.cli.classify import classify
 from terrain.errors import ModelFileError
-from terrain.image_label import answered
+from terrain.image_labels.image_label import answered
 
 SIZE = 64
 

@@ -11,7 +11,7 @@ from odometry.checks.findings.finding import Finding, Level
 from terrain.calibration import mount_sources
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_sources import MountSource
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.camera import _write
 from terrain.errors import CalibrationError

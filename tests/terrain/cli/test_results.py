@@ -12,7 +12,7 @@ from terrain.cli.results import (
     print_written,
 )
 from terrain.main_job import run_odometry
-from terrain.run_result import TerrainChange
+from terrain.result.run_result import TerrainChange
 
 
 def test_columns_line_up_words_to_the_left_numbers_to_the_right(capsys):

@@ -6,8 +6,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from odometry.run import Robot
-from terrain.camera import Camera
-from terrain.region import Rectangle, Region
+from terrain.camera.camera import Camera
+from terrain.region.region import Rectangle, Region
 from terrain.report.ground_plots import (
     draw_footprint,
     draw_ground_grid,

@@ -8,11 +8,11 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from terrain.image_label import ImageLabel
-from terrain.place_labels import PlaceLabel
-from terrain.region import Rectangle, Region
+from terrain.image_labels.image_label import ImageLabel
+from terrain.region.region import Rectangle, Region
 from terrain.report.labels_and_truth import around_switches, confusion
-from terrain.switch import SwitchEvent
+from terrain.switch.place_labels import PlaceLabel
+from terrain.switch.switch import SwitchEvent
 
 STAMPS_S = np.arange(0.0, 20.5, 0.5)  # at 0.5 m/s; snow from 10 s on
 ROWS = np.arange(len(STAMPS_S)) + 2

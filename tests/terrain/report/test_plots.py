@@ -8,10 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from odometry.evaluation.stretches import Stretch
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.answer import Classification
-from terrain.image_label import ImageLabel
-from terrain.region import Rectangle, Region
+from terrain.image_labels.image_label import ImageLabel
+from terrain.region.region import Rectangle, Region
+from terrain.region.whole_image import Cell
 from terrain.report.plots import (
     NO_LABEL,
     draw_cells,
@@ -20,7 +21,6 @@ from terrain.report.plots import (
     plot_image,
     plot_labels,
 )
-from terrain.whole_image import Cell
 
 TINTS = {"$ice^$": "#112233", "snow": "#445566", "unknown": "#dddddd"}
 RECTANGLE = Rectangle(0.6, 0.9, -0.15, 0.15)

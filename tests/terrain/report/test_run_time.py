@@ -12,7 +12,7 @@ from odometry.run_span import Span, cut_run
 from terrain.cli.results import print_changes
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
-from terrain.run_notes import event_lines, run_notes
+from terrain.result.run_notes import event_lines, run_notes
 from tests.terrain.report.page_reader import Reader
 
 EPOCH_S = 1_700_000_000.25

@@ -6,9 +6,10 @@ import pytest
 import skimage.data
 
 from odometry.simulation.ground import GroundMap, to_world
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.errors import SynthesisError
-from terrain.region import Rectangle
+from terrain.region.region import Rectangle
+from terrain.region.warp import ground_view
 from terrain.synthesis.config import default_camera
 from terrain.synthesis.texture import Texture
 from terrain.synthesis.view import (
@@ -21,7 +22,6 @@ from terrain.synthesis.view import (
     expose,
     jpeg_image,
 )
-from terrain.warp import ground_view
 
 
 @pytest.fixture(scope="module")

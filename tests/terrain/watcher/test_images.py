@@ -6,17 +6,17 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
+from tests.terrain.sources.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 from odometry.frames import Frame
 from odometry.run_terrains import Footing
-from terrain.camera import Camera
+from terrain.camera.camera import Camera
 from terrain.classification.likeness import Likeness
 from terrain.errors import CameraError
-from terrain.region import RegionConfig
-from terrain.switch import SwitchConfig
-from terrain.terrain_details import DetailsWatch
-from terrain.watcher import TerrainWatcher
-from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
+from terrain.image_labels.terrain_details import DetailsWatch
+from terrain.region.region import RegionConfig
+from terrain.sources.watcher import TerrainWatcher
+from terrain.switch.switch import SwitchConfig
 
 
 def cut_short(image):

@@ -1,0 +1,78 @@
+"""Where the terrain of one image is in the next one, and images part by part."""
+
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.geometry import se2
+from terrain.camera.camera import Camera
+
+NODE_PX = 8  # between such pixels the way of terrain is interpolated, off by 0.1 px at the most
+
+
+def terrain_after(
+    camera: Camera, width_px: int, step: FloatArray, pixels: FloatArray
+) -> FloatArray:
+    """Where terrain at pixels (N, 2) of an image reduced to a width is after a step (3,).
+
+    The step is x, y [m], yaw [rad] of the second robot frame in the first; NaN where nowhere.
+    """
+    return _pixels_after(camera, width_px, step, _places(camera, width_px, pixels))
+
+
+def _places(camera: Camera, width_px: int, pixels: FloatArray) -> FloatArray:
+    """Terrain (N, 2) [m] that is at pixels (N, 2) of a reduced image."""
+    times = camera.image_size[0] / width_px
+    return camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
+
+
+def _pixels_after(
+    camera: Camera, width_px: int, step: FloatArray, places: FloatArray
+) -> FloatArray:
+    times = camera.image_size[0] / width_px
+    there = camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
+    return np.asarray((there + 0.5) / times - 0.5)
+
+
+@lru_cache(maxsize=4)  # of the images that a camera takes one after the other
+def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
+    """Terrain (rows, columns, 2) [m] at every NODE_PX-th pixel of a reduced image."""
+    rows, columns = np.arange(0, height + NODE_PX, NODE_PX), np.arange(0, width + NODE_PX, NODE_PX)
+    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2).astype(np.float64)
+    return _places(camera, width, nodes).reshape(len(rows), len(columns), 2)
+
+
+def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[AnyArray, BoolArray]:
+    """A reduced image (h, w) after a step, its terrain where it was before; and where it is known.
+
+    Both (h, w), the second False where terrain has left the image.
+    """
+    height, width = image.shape
+    places = _places_of_nodes(camera, height, width)
+    there = _pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
+    at_v, at_u = np.mgrid[:height, :width].astype(np.float32) / NODE_PX
+    u, v = (
+        np.nan_to_num(
+            cv2.remap(there[..., axis].astype(np.float32), at_u, at_v, cv2.INTER_LINEAR), nan=-1.0
+        )
+        for axis in (0, 1)
+    )
+    known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
+    moved = cv2.remap(image, u, v, cv2.INTER_LINEAR)
+    return moved, np.asarray(known)
+
+
+def middles(shape: tuple[int, ...], size_px: int) -> FloatArray:
+    """Middles (N, 2) of squares in an image of a shape (h, w), row by row."""
+    u, v = np.meshgrid(np.arange(shape[1] // size_px), np.arange(shape[0] // size_px))
+    return np.asarray((np.column_stack([u.ravel(), v.ravel()]) + 0.5) * size_px - 0.5)
+
+
+def tiles(image: AnyArray, size_px: int) -> AnyArray:
+    """Squares (K, size_px ** 2) of an image (h, w), row by row."""
+    rows, columns = (length // size_px for length in image.shape)
+    whole = image[: rows * size_px, : columns * size_px]
+    parts = whole.reshape(rows, size_px, columns, size_px).swapaxes(1, 2)
+    return np.asarray(parts.reshape(rows * columns, -1))

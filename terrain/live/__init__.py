@@ -1,0 +1,1 @@
+"""The main job frame by frame, as on a robot."""

@@ -1,0 +1,1 @@
+"""Odometry of other programs beside a finished run."""

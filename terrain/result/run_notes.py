@@ -1,0 +1,135 @@
+"""What to know of a result before its numbers are used: names, images, refused poses."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from odometry.run import UNKNOWN
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
+from terrain.classification.no_ground import no_ground_note
+from terrain.classification.own_statistics import OwnStatisticsClassifier
+from terrain.image_labels.image_label import ASTRIDE, ImageLabel
+from terrain.result.evaluation_notes import event_line
+from terrain.result.run_result import RunResult
+from terrain.result.sets_against_poses import sentences, sets_against_poses
+from terrain.sources.watcher import TerrainWatcher
+from terrain.terrain_names import name_notes
+
+MANY_REFUSED = 0.1
+FEW_EVENTS = 10
+FEWEST_IMAGES, MOSTLY_UNKNOWN = 20, 0.5
+REFUSED_POSES = "refused_poses"  # kind of an event that says the same
+
+
+def run_notes(result: RunResult) -> list[str]:
+    """Sentences on what makes a result less than it seems; none where there is nothing.
+
+    They stand on the page and in result.json beside what the check finds in the recording.
+    """
+    classifier = None if result.watcher is None else result.watcher.classifier
+    return [
+        *name_notes(result.initial_terrain, classifier, result.parameters),
+        *([] if result.watcher is None else _images(result, result.watcher)),
+        *_refused(result),
+        *sentences(sets_against_poses(result)),
+    ]
+
+
+def event_lines(result: RunResult) -> list[str]:
+    """What the filter noticed, the first few in full, without what `run_notes` says."""
+    many = bool(_refused(result))
+    events = [e for e in result.replay.events if not (many and e.kind == REFUSED_POSES)]
+    lines = [event_line(event, result.run.began_s) for event in events[:FEW_EVENTS]]
+    if len(events) > FEW_EVENTS:
+        lines.append(f"{len(events) - FEW_EVENTS} more events of the filter, see result.json")
+    return lines
+
+
+def _images(result: RunResult, watcher: TerrainWatcher) -> list[str]:
+    """Images that are unlike those of training, show no terrain, or have no name."""
+    found = []
+    if isinstance(watcher.classifier, OwnStatisticsClassifier):
+        found.append(watcher.classifier.described)
+    likeness = watcher.seen.likeness
+    if likeness is not None and likeness.note is not None:
+        doubtful = {DOUBTFUL, IMPROBABLE, TOO_UNLIKE}
+        doubted = sum(label.reason in doubtful for label in watcher.image_labels)
+        learned = getattr(watcher.classifier, "confidence_", None) is not None
+        what = f"Names that are not surely enough right are unknown ({doubted} images)"
+        found.append(f"{likeness.note}. {what if learned or doubted else 'Here they count less'}")
+    empty = no_ground_note([image_label.reason for image_label in watcher.image_labels])
+    if empty is not None:
+        found.append(empty)
+    found += _blind(watcher.image_labels) or _few_names(watcher.image_labels)
+    if result.named_start is None and len(result.parameters.terrains) > 1:
+        found += _start(result.initial_terrain, result.run.terrain, watcher.image_labels)
+    return found
+
+
+def _refused(result: RunResult) -> list[str]:
+    """Say that the filter refused many poses."""
+    poses = int((~np.isnan(result.replay.innovations_squared)).sum())
+    refused = poses - int(result.replay.accepted.sum())
+    if refused <= MANY_REFUSED * poses:
+        return []
+    return [
+        f"the filter refused {refused} of {poses} poses, because they lie far from "
+        "where it expected them. The units of pose.csv or odometry.csv may be wrong, the poses "
+        "may jump, or the noise settings ([filter] of --config) may be too small"
+    ]
+
+
+def _start(assumed: str, of_run: str | None, image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say that the run began on a terrain that was not named and differs from the first label."""
+    labels = (str(image_label.label) for image_label in image_labels)
+    seen = next((label for label in labels if label not in ("", UNKNOWN)), assumed)
+    if assumed in (seen, of_run):
+        return []
+    return [
+        f"no terrain was named for the start, so {assumed!r}, the first of the parameter set, was "
+        f"in force, but the first label is {seen!r}; a wrong start misleads the gyroscope's bias. "
+        f"Try --terrain {seen}"
+    ]
+
+
+def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say why where no image was given the name of a terrain."""
+    if not image_labels or any(
+        image_label.label not in ("", UNKNOWN) for image_label in image_labels
+    ):
+        return []
+    reasons = Counter(
+        image_label.reason or "unlike any training patch" for image_label in image_labels
+    )
+    words = ", ".join(f"{reason} ({count})" for reason, count in reasons.most_common(3))
+    nothing = "the terrain is that of the start, and unknown where no image supports it for long"
+    astride = sum(count for reason, count in reasons.items() if reason.startswith(ASTRIDE))
+    others = (count for reason, count in reasons.items() if not reason.startswith(ASTRIDE))
+    if astride > max(others, default=0):
+        return [
+            f"vision named one terrain for both treads in none of {len(image_labels)} images: "
+            f"{words}; {nothing}. With --per-tread an image counts where both treads have the same "
+            "label (columns left and right of terrain.csv); without it the terrain ahead is "
+            "classified as one"
+        ]
+    return [
+        f"vision named no terrain in any of {len(image_labels)} images: {words}; {nothing}. "
+        "Look at them with terrain-odometry camera RUN --model MODEL --out DIR: where they do not "
+        "show the terrain ahead it suggests a pitch; where they do, the model needs patches of "
+        "this terrain and camera (label, train)"
+    ]
+
+
+def _few_names(image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say that the terrain in force rests on few images where most of them are unknown."""
+    reasons = [one.reason or "far from all" for one in image_labels if one.label == UNKNOWN]
+    classified = sum(one.label != "" for one in image_labels)
+    if classified < FEWEST_IMAGES or len(reasons) < MOSTLY_UNKNOWN * classified:
+        return []
+    (reason, count) = Counter(reasons).most_common(1)[0]
+    return [
+        f"{len(reasons)} of {classified} classified images are unknown (most often: {reason}, "
+        f"{count}), so that the terrain in force rests on the others, some of them far behind. "
+        "Compare the path with that of --no-vision"
+    ]

@@ -1,0 +1,1 @@
+"""From labels of places to the terrain in force."""
