@@ -39,7 +39,7 @@ def gyroscope(evidence: Evidence) -> Iterator[Finding]:
 
 def _bias(evidence: Evidence) -> Iterator[Finding]:
     found = stationary_bias(evidence) or _bias_by_poses(evidence)
-    if found is None:
+    if found is None or drifts_at_rest(evidence):  # rest and poses contradict each other
         return
     bias, sigma, how = found
     if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
@@ -107,8 +107,8 @@ def drifts_at_rest(evidence: Evidence) -> str:
         return ""
     return (
         f"measured yaw turns by {apart:+.3f} rad/s besides what gyro_z reads, which is "
-        f"{rest[0]:+.3f} rad/s at rest (poses that drift round, or a gyroscope that is wrong in "
-        "turns)"
+        f"{rest[0]:+.3f} rad/s at rest (poses that drift round, a gyroscope that is wrong in "
+        "turns, or treads that read zero while the robot turns)"
     )
 
 

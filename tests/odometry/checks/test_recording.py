@@ -66,6 +66,17 @@ def test_a_gyroscope_bias_is_a_note(recording):
     assert "+0.014" in bias.seen  # -0.0157 rad/s are in the recording
 
 
+def test_no_bias_is_named_by_a_rest_in_which_the_poses_turn(recording):
+    """Treads with a dead band read zero while the robot turns slowly."""
+    run = recording("husky_tile_20231212_1616_s00")
+    table = run.odometry
+    least_m_s = 0.15 * np.quantile(np.abs(table.stack("v_left", "v_right")), 0.9)
+    dead = {n: np.where(np.abs(table[n]) > least_m_s, table[n], 0) for n in ("v_left", "v_right")}
+    report = check_recording(put(run, "odometry", **dead))
+    assert "gyroscope_bias" not in {finding.name for finding in report.findings}
+    assert "read zero while the robot turns" in report.findings[0].seen
+
+
 def test_a_tread_that_stands_beside_a_stuck_one_is_not_accused(recording):
     run = recording("warthog_grass_20240729_1404")
     left = run.odometry["v_left"].copy()
