@@ -13,16 +13,14 @@ from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import APART_S, pairs_to_compare
 from terrain.checks.image_agreement import robot_motion
 from terrain.checks.terrain_views import TerrainViews
-from terrain.image_labels.terrain_details import change_of_details, details_of_tiles
+from terrain.image_labels.terrain_details import LOSS, TileDetails, change_of_details
 
-# Logarithm of details over light: another gamma (0.6) has -0.4 to -0.64, fog -0.9 to -1.4
-HALF = float(np.log(2.0))
-WORTH_A_LOOK = HALF / 2  # of images that are looked at first, whatever terrain they show
+WORTH_A_LOOK = -LOSS / 2  # of images that are looked at first, whatever terrain they show
 FEWEST_LOOKS = 3  # of these on a stretch: one blurred image is none
 
 
 def lost_details(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Finding]:
-    """Find where images begin to show half the details of the same terrain, and where they end.
+    """Find where images begin to lack details of the same terrain, and where they end.
 
     Terrain of other details is no finding, nor is light: each tile of an image is compared with
     the place in the next image to which the treads moved its terrain. What comes slowly, in parts
@@ -83,10 +81,10 @@ class _DetailsOfRun:
     def level(self, row: int) -> float:
         """Mean logarithm of details over light of an image, whatever it shows."""
         image = self.views.grey(str(self.files[row]))
-        return float("nan") if image is None else float(details_of_tiles(image).mean())
+        return float("nan") if image is None else TileDetails.of(image).level
 
     def change(self, first: int, last: int) -> tuple[int, float] | None:
-        """The row after a change by half or more on the same terrain, and its logarithm."""
+        """The row after a change on the same terrain by as much as LOSS, and its logarithm."""
         low, high = self.level(first), self.level(last)
         while last - first > 1:
             middle = (first + last) // 2
@@ -101,6 +99,6 @@ class _DetailsOfRun:
             return None
         travel_m, turn_rad = (of[0] for of in robot_motion(self.run, stamps_s[None, None]))
         step = se2.exp(np.column_stack([travel_m, 0 * travel_m, turn_rad]))[0]
-        changes = change_of_details(self.camera, before, after, step)
-        change = 0.0 if changes is None else float(changes[0])
-        return None if abs(change) < HALF else (last, change)
+        changes = change_of_details(self.camera, TileDetails.of(before), after, step)
+        change = 0.0 if changes is None else float(changes[np.abs(changes).argmax()])
+        return None if abs(change) < -LOSS else (last, change)

@@ -38,9 +38,12 @@ def _pixels_after(
 
 @lru_cache(maxsize=4)  # of the images that a camera takes one after the other
 def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
-    """Terrain (rows, columns, 2) [m] at every NODE_PX-th pixel of a reduced image."""
-    rows, columns = np.arange(0, height + NODE_PX, NODE_PX), np.arange(0, width + NODE_PX, NODE_PX)
-    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2).astype(np.float64)
+    """Terrain (rows, columns, 2) [m] at the middle of every square of NODE_PX, one row beyond."""
+    rows, columns = (
+        np.arange(-NODE_PX, length + NODE_PX, NODE_PX) + (NODE_PX - 1) / 2
+        for length in (height, width)
+    )
+    nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
     return _places(camera, width, nodes).reshape(len(rows), len(columns), 2)
 
 
@@ -52,16 +55,13 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     height, width = image.shape
     places = _places_of_nodes(camera, height, width)
     there = _pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
-    at_v, at_u = np.mgrid[:height, :width].astype(np.float32) / NODE_PX
-    u, v = (
-        np.nan_to_num(
-            cv2.remap(there[..., axis].astype(np.float32), at_u, at_v, cv2.INTER_LINEAR), nan=-1.0
-        )
-        for axis in (0, 1)
-    )
-    known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)
-    moved = cv2.remap(image, u, v, cv2.INTER_LINEAR)
-    return moved, np.asarray(known)
+    size = places.shape[1] * NODE_PX, places.shape[0] * NODE_PX
+    at_pixels = cv2.resize(there.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+    u, v = cv2.split(at_pixels[NODE_PX:, NODE_PX:][:height, :width])
+    known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)  # NaN is not
+    for nowhere in (u, v):
+        cv2.patchNaNs(nowhere, -1.0)
+    return cv2.remap(image, u, v, cv2.INTER_LINEAR), np.asarray(known)
 
 
 def middles(shape: tuple[int, ...], size_px: int) -> FloatArray:

@@ -3,13 +3,14 @@
 import cv2
 import numpy as np
 import pytest
+from terrain.terrain_details import change_of_details as change_from
 
 from terrain.image_labels.terrain_details import (
     LOSS,
+    NEAR_M,
     WIDTH_PX,
     DetailsWatch,
-    change_of_details,
-    details_of_tiles,
+    TileDetails,
 )
 from tests.terrain.test_still_image import SIZE, down
 from tests.terrain.test_still_image import seen as shown
@@ -24,6 +25,10 @@ def rough():
     """Greys (2000, 2000) of random terrain around the origin."""
     noise = np.random.default_rng(4).normal(0, 1, (2000, 2000))
     return 120 + 200 * cv2.GaussianBlur(noise, (0, 0), 1.5)
+
+
+def change_of_details(camera, before, after, step):
+    return change_from(camera, TileDetails.of(before), after, step)
 
 
 def fog(image):
@@ -51,15 +56,15 @@ def test_details_are_lost_from_the_first_to_the_last_image(rough, change):
     assert lost(rough, change) == [FROM <= row < TO for row in range(LENGTH)]
 
 
-def test_a_little_blur_is_a_loss_of_the_finest_details(rng):
+def test_a_little_blur_is_a_loss_of_the_focus_alone(rng):
     sizes_px = (1.0, 2.0, 4.0, 8.0)
     noise = rng.normal(0, 1, (4, 2000, 2000))
     parts = (cv2.GaussianBlur(n, (0, 0), of) * of for n, of in zip(noise, sizes_px, strict=True))
     world = 120 + 100 * sum(parts)
-    found = lost(world, blurred(0.8))
+    found = lost(world, blurred(1.0))
     assert found == [FROM <= row < TO for row in range(LENGTH)]
     images = [shown(world, down(50)) for _ in range(2)]
-    change = change_of_details(down(50), images[0], blurred(0.8)(images[1]), np.zeros(3))
+    change = change_of_details(down(50), images[0], blurred(1.0)(images[1]), np.zeros(3))
     assert change[0] > LOSS > change[1]
 
 
@@ -68,10 +73,13 @@ def test_a_little_blur_is_a_loss_of_the_finest_details(rng):
     [
         lambda image: image,
         lambda image: 0.4 * image,
-        lambda image: 255 * (image / 255) ** 0.7,
+        lambda image: 1.5 * image,
+        lambda image: 255 * (image / 255) ** 0.5,
+        lambda image: 255 * (image / 255) ** 1.5,
+        lambda image: image * np.where(np.arange(240)[:, None] < 120, 0.45, 1.0),
         lambda image: cv2.blur(image, (5, 1)),
     ],
-    ids=["as it is", "light", "gamma", "motion"],
+    ids=["as it is", "shade", "sun", "gamma 0.5", "gamma 1.5", "edge of a shadow", "motion"],
 )
 def test_light_gamma_and_motion_are_no_loss(rough, change):
     assert not any(lost(rough, change))
@@ -101,6 +109,40 @@ def test_fog_that_comes_over_some_images_close_together_is_noticed(rough):
     assert not any(found[:3])
 
 
+def test_fog_that_ends_over_some_images_near_its_begin_is_over(rough):
+    camera, watch, found = down(50), DetailsWatch(down(50)), []
+    for row, thick in enumerate([0, 0, 0, 1, 0.8, 0.6, 0.4, 0.2, 0, 0]):
+        pose = np.array([0.06 * row, 0.0, 0.0])
+        image = shown(rough, camera, pose, noise=2, seed=row).astype(np.float32)
+        image = (1 - thick) * image + thick * fog(image)
+        found.append(watch.has_lost(image.astype(np.uint8), pose))
+    assert found[3]
+    assert not any(found[:3] + found[-2:])
+
+
+def test_the_image_before_a_loss_is_not_compared_far_from_it(rough):
+    thins = {FROM + 5: 0.55, FROM + 6: 0.8}  # from 0.35: never by two thirds of it at once
+    assert STEP_M * 5 > NEAR_M
+    camera, watch, found = down(50), DetailsWatch(down(50)), []
+    for row, x in enumerate(WAY_M):
+        pose, share = np.array([x, 0.0, 0.0]), 1.0
+        if row >= FROM:
+            share = thins.get(min(row, max(thins)), 0.35)
+        image = shown(rough, camera, pose, noise=2, seed=row).astype(np.float32)
+        found.append(watch.has_lost((share * image + (1 - share) * 170).astype(np.uint8), pose))
+    assert found == [row >= FROM for row in range(LENGTH)]
+
+
+def test_fog_that_is_back_at_once_is_noticed_where_the_robot_stands(rough):
+    poses_m = np.minimum(WAY_M, STEP_M * (LENGTH - 4))
+    camera, watch, found = down(50), DetailsWatch(down(50)), []
+    for row, x in enumerate(poses_m):
+        pose, clear = np.array([x, 0.0, 0.0]), row < FROM or row == LENGTH - 3
+        image = shown(rough, camera, pose, noise=2, seed=row).astype(np.float32)
+        found.append(watch.has_lost((image if clear else fog(image)).astype(np.uint8), pose))
+    assert found == [row >= FROM and row != LENGTH - 3 for row in range(LENGTH)]
+
+
 def test_the_answer_holds_where_images_have_no_terrain_in_common(rough):
     poses_m = WAY_M + np.where(np.arange(LENGTH) > FROM, 3.0, 0.0)
     assert all(lost(rough, fog, poses_m, end=LENGTH)[FROM:])
@@ -123,7 +165,7 @@ def test_smoother_terrain_ahead_is_no_change_and_fog_on_it_is(rough):
     world, camera = 120 + np.where(ahead, 0.15, 1.0) * (rough - 120), down(65)
     step = np.array([0.5, 0.0, 0.0])
     before, after = shown(world, camera), shown(world, camera, step)
-    assert details_of_tiles(after).mean() - details_of_tiles(before).mean() < -np.log(2)
+    assert TileDetails.of(after).level - TileDetails.of(before).level < -np.log(2)
     assert change_of_details(camera, before, after, step) == pytest.approx([0, 0], abs=0.3)
     assert change_of_details(camera, before, fog(after), step)[0] < -np.log(2)
 
