@@ -5,7 +5,7 @@
 
 The recordings of `check_image_motion` (rocking cameras, blurred and noisy images, several terrains
 each), altered from 0.45 of their time on, in images of 320 px. Right is one finding that begins
-within a second of it. Limits were chosen on seeds 60 to 63, and looked at on 64 to 66.
+within a second of it. Limits were chosen on seeds 60 to 66 and other recordings.
 """
 
 import argparse
