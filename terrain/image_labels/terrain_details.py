@@ -23,6 +23,7 @@ DISTINCT = 1.0  # grey levels of details: tiles with less may show noise alone
 # gamma 0.6 never. Of the focus -0.47 and more; blur of 2 px of 640 -0.35 to -0.9, blur by motion
 # of 9 px below -0.4 in 2 of 100
 LOSS = float(np.log(0.6))
+LOSSES = (LOSS, float(np.log(0.65)))  # of contrast, and of focus of one image at once
 REGAINED = 2 / 3  # of a loss: the details are back
 APART_M = 0.12  # of travel between images that are compared, at least where none has lost details
 NEAR_M = 0.4  # of travel from the last image before a loss: farther on terrain looks finer, nearer
@@ -164,8 +165,8 @@ class DetailsWatch:
         if change is None:
             return self._lost
         if self._lost is None:
-            kind = int(change.argmin())
-            return (kind, float(change[kind])) if change[kind] < LOSS else None
+            kind = int((change / LOSSES).argmax())
+            return (kind, float(change[kind])) if change[kind] < LOSSES[kind] else None
         kind, loss = self._lost
         regained = change[kind] - (loss if self._is_clear else 0.0)
         return None if regained > -REGAINED * loss else self._lost
