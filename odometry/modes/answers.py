@@ -111,17 +111,16 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         found["bias of the gyroscope"] = track.gyroscope.bias_is_open
     if track.alike is not None:
         found["alike"] = track.alike.any(axis=1)
-    if track.turns_are_off is not None:
-        found["turns"] = track.turns_are_off
-    if track.contradicted is not None:
-        found["contradicted"] = track.contradicted
-    if track.headings_disagree is not None:
-        found["headings"] = track.headings_disagree
-    if track.blocked is not None:
-        found["blocked"] = track.blocked
+    others = {
+        "turns": track.turns_are_off,
+        "contradicted": track.contradicted,
+        "gain": None if track.gain is None else track.gain.off,
+        "headings": track.headings_disagree,
+        "blocked": track.blocked,
+    }
     if track.travel is not None:
         found["travel"] = track.travel.off[of_most]
-    return found
+    return found | {name: refused for name, refused in others.items() if refused is not None}
 
 
 def _held(probabilities: FloatArray, most: IntArray, sure: float, most_doubt: float) -> BoolArray:

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray
 from odometry.modes.between_modes import BetweenModes
 from odometry.modes.followed import Followed
+from odometry.modes.gain_words import gain_words
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.velocity import VelocityModes
 
@@ -70,6 +71,7 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
             )
         )
     found += _of_motion(followed, undetermined)
+    found += _of_gain(followed, undetermined)
     said = [one for one in found if one.share >= LEAST_DOUBT]
     return tuple(sorted(said, key=lambda one: -one.share))
 
@@ -146,6 +148,25 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 )
             )
     return found
+
+
+def _of_gain(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
+    """Turns of another gain than that of the most probable mode."""
+    track, modes = followed.last_track, followed.mode_set.modes
+    if track.gain is None:
+        return []
+    off = track.gain.off & undetermined & (track.probabilities.max(axis=1) >= followed.config.sure)
+    if not off.any():
+        return []
+    said = gain_words(track, track.gain, modes.turn_gains().mean(axis=1), off)
+    return [
+        Doubt(
+            f"the robot turns by {said}, which is more than such turns differ by, for "
+            f"{round(100 * _share(followed, off))} % of the time",
+            "identify a mode for this terrain, load or set of wheels, and check both treads",
+            _share(followed, off),
+        )
+    ]
 
 
 def _between(followed: Followed, between: BetweenModes) -> Doubt:

@@ -1,7 +1,7 @@
 """Identify traction modes from runs: the gains of each terrain that runs name, and the noise."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -11,6 +11,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.modes.held_out_gains import gain_errors
 from odometry.modes.mode_windows import heard_by_mode, inside, scenes_by_mode
 from odometry.modes.response import SHORTEST_LAG_S, lagged
 from odometry.modes.traction import TractionModes, requested, turns_of, twists_of
@@ -183,7 +184,7 @@ def identify_traction_modes(
         of_yaw_rate = estimated_yaw_rate_noise(errors)
     bar.close()
     position, yaw, wander, turn = noise.variances
-    return TractionModes(
+    modes = TractionModes(
         names=tuple(fits),
         gains=np.stack([fit.gains for fit in fits.values()]),
         lag_s=np.array([fit.lag_s for fit in fits.values()]),
@@ -197,6 +198,10 @@ def identify_traction_modes(
         variance_growth=of_yaw_rate.growth,
         fastest_m_s=_fastest_m_s(scenes),
     )
+    if paper:
+        return modes
+    found = gain_errors(modes, heard)
+    return modes if found is None else replace(modes, gain_spread=found[0], gain_power=found[1])
 
 
 def _fastest_m_s(scenes: dict[str, list[DenseWindows]]) -> float:

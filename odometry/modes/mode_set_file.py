@@ -45,7 +45,8 @@ HEAD = {
         Key("variance_growth", (), "0 or more"),
     ),
 }
-OPTIONAL = (Key("fastest_m_s", (), "above 0"),)
+FASTEST = Key("fastest_m_s", (), "above 0")
+OPTIONAL = {"velocity": (FASTEST,), "traction": (FASTEST, Key("gain_power", (), "0 or more"))}
 MODE = {
     "velocity": (
         Key("A", (2, 2)),
@@ -57,7 +58,7 @@ MODE = {
 }
 OPTIONAL_MODE: dict[str, tuple[Key, ...]] = {
     "velocity": (Key("speed_power", (2,), "0 or more"), Key("gain_spread", (), "0 or more")),
-    "traction": (),
+    "traction": (Key("gain_spread", (), "0 or more"),),
 }
 KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
     "velocity": VelocityModes,
@@ -87,7 +88,7 @@ def write_mode_set(file: Path, mode_set: ModeSet, comment: str = "") -> None:
     head |= {one.name: _plain(getattr(modes, one.name)) for one in HEAD[modes.kind]}
     head |= {
         one.name: _plain(getattr(modes, one.name))
-        for one in OPTIONAL
+        for one in OPTIONAL[modes.kind]
         if np.isfinite(getattr(modes, one.name))
     }
     tables = {
@@ -127,8 +128,8 @@ def read_mode_set(file: Path) -> ModeSet:
     if not isinstance(tables, dict) or not tables:
         raise ParameterError(f"{file}: expected a table [mode.NAME] for each mode")
     kind, where = head["kind"], f"{file}: [modes]"
-    _only(head, {"kind", "source", *(o.name for o in (*HEAD[kind], *OPTIONAL))}, where)
-    given = (*HEAD[kind], *(one for one in OPTIONAL if one.name in head))
+    _only(head, {"kind", "source", *(o.name for o in (*HEAD[kind], *OPTIONAL[kind]))}, where)
+    given = (*HEAD[kind], *(one for one in OPTIONAL[kind] if one.name in head))
     values: dict[str, Any] = {one.name: _array(head, one, where) for one in given}
     dwell = Key("dwell_s", (), "above 0")
     keys = (*MODE[kind], dwell)

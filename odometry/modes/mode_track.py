@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.modes.between_modes import BetweenModes
+from odometry.modes.gain_check import GainCheck
 from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.modes_config import ModesConfig
@@ -45,6 +46,8 @@ class ModeTrack:
         Where gyroscope and headings turn apart by more than distinguishes modes; else nowhere.
     contradicted : (N,) or None
         Where the most probable mode was contradicted not long ago; without it nowhere.
+    gain : GainCheck or None
+        Where the robot turns more or less than the most probable mode does; without it nowhere.
     scatter : (N,) or None
         How many times as far poses scatter as in the runs of identification; NaN: undetermined.
     felt : (N, M) or None
@@ -79,6 +82,7 @@ class ModeTrack:
     between: BetweenModes | None = None
     headings_disagree: BoolArray | None = None
     contradicted: BoolArray | None = None
+    gain: GainCheck | None = None
     scatter: FloatArray | None = None
     felt: FloatArray | None = None
     blocked: BoolArray | None = None

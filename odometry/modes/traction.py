@@ -57,6 +57,10 @@ class TractionModes:
     fastest_m_s : float
         Largest speed of a tread in the runs identified from: the modes are not valid at speeds far
         above it. A set that does not state it has no limit.
+    gain_spread, gain_power : (M,) or None, float
+        Of the error of a mode's yaw rate gain on drives that it was not identified from: standard
+        deviation from turn to turn as a share, and what adds to its square by the information of a
+        window [rad^2/s] (`held_out_gains`). None of sets of versions before, and without gyroscope.
     """
 
     names: tuple[str, ...]
@@ -67,6 +71,8 @@ class TractionModes:
     measurement_variance: FloatArray
     variance_growth: float = 0.0
     fastest_m_s: float = np.inf
+    gain_spread: FloatArray | None = None
+    gain_power: float = np.inf
 
     kind = "traction"
     errors_last_s = 0.0

@@ -38,6 +38,7 @@ TESTS = (
     "between",
     "headings_disagree",
     "contradicted",
+    "gain",
 )
 KINDS: Mapping[str, Mapping[str, bool]] = {
     "model and noise of each ground": {},

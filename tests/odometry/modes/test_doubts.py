@@ -8,6 +8,7 @@ import pytest
 from odometry.modes.doubts import doubts
 from odometry.modes.files import content_of
 from odometry.modes.followed import Followed
+from odometry.modes.gain_check import GainCheck
 from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
@@ -42,10 +43,12 @@ def cases():
         np.column_stack([late(0.93, before=1.0)] * 2),
     )
     turns = late(True, before=False)
+    gain = GainCheck(turns, late(0.05, before=0.0))
     return [
         ({"travel": travel}, UNDETERMINED, "positions went 0.93 times as far", "check the size"),
         ({"turns_are_off": turns}, UNDETERMINED, "turns by more or by less", "identify a mode"),
         ({"blocked": turns}, UNDETERMINED, "the robot does not turn between", "look whether"),
+        ({"gain": gain}, UNDETERMINED, "turns by 5 % more than on a, which", "identify a mode"),
         ({"contradicted": turns}, UNDETERMINED, "the motion contradicted the", "identify a mode"),
         ({"headings_disagree": turns}, UNDETERMINED, "headings turn apart by", "check the gyro"),
         ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),

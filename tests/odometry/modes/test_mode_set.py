@@ -33,7 +33,7 @@ def mode_sets(draw):
         shape = (*many, *one.shape)
         return draw(arrays(np.float64, shape, elements=positive if one.sign else finite))
 
-    given_too = [one for one in OPTIONAL if draw(st.booleans())]
+    given_too = [one for one in OPTIONAL[kind] if draw(st.booleans())]
     values = {one.name: drawn(one) for one in (*HEAD[kind], *given_too)}
     values = {name: of if of.shape else float(of) for name, of in values.items()}
     of_each = (*MODE[kind], *(one for one in OPTIONAL_MODE[kind] if draw(st.booleans())))
