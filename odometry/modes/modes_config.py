@@ -44,7 +44,7 @@ class ModesConfig:
     gain_sigmas : float
         By which the gain of a traction mode may be off over a window: with 2.5 a terrain between
         two modes has a wrong name for 17.0 % of the time instead of 14.8, and clean runs lose 0.8
-        points instead of 1.8.
+        points instead of 1.8 (development, one spread for all modes).
     alike_sigmas : float
         Of what lasts of the errors of modes; below it two modes are taken for equal.
     bias_sigmas : float
