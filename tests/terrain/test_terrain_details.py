@@ -3,7 +3,6 @@
 import cv2
 import numpy as np
 import pytest
-from terrain.terrain_details import change_of_details as change_from
 
 from terrain.image_labels.terrain_details import (
     LOSS,
@@ -12,6 +11,7 @@ from terrain.image_labels.terrain_details import (
     DetailsWatch,
     TileDetails,
 )
+from terrain.image_labels.terrain_details import change_of_details as change_from
 from tests.terrain.test_still_image import SIZE, down
 from tests.terrain.test_still_image import seen as shown
 
