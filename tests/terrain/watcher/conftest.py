@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
-from tests.terrain.sources.watcher.watched import ByBrightness
 
 from odometry.run import Run
 from terrain.camera.camera import Camera
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
+from tests.terrain.watcher.watched import ByBrightness
 
 
 def encoded(image, number):

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
-from tests.terrain.sources.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 from odometry.frames import Frame
 from odometry.run_terrains import Footing
@@ -17,6 +16,7 @@ from terrain.image_labels.terrain_details import DetailsWatch
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
+from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 
 def cut_short(image):

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tests.terrain.sources.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 from terrain.camera.camera import Camera
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
+from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 
 def test_every_image_has_a_sighting_and_the_terrain_after_it(watch):
