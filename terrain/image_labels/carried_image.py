@@ -12,31 +12,29 @@ from terrain.camera.camera import Camera
 NODE_PX = 8  # between such pixels the way of terrain is interpolated, off by 0.1 px at the most
 
 
-def terrain_after(
-    camera: Camera, width_px: int, step: FloatArray, pixels: FloatArray
-) -> FloatArray:
-    """Where terrain at pixels (N, 2) of an image reduced to a width is after a step (3,).
-
-    The step is x, y [m], yaw [rad] of the second robot frame in the first; NaN where nowhere.
-    """
-    return _pixels_after(camera, width_px, step, _places(camera, width_px, pixels))
-
-
-def _places(camera: Camera, width_px: int, pixels: FloatArray) -> FloatArray:
-    """Terrain (N, 2) [m] that is at pixels (N, 2) of a reduced image."""
+def places_at(camera: Camera, width_px: int, pixels: FloatArray) -> FloatArray:
+    """Terrain (N, 2) [m] that is at pixels (N, 2) of an image reduced to a width."""
     times = camera.image_size[0] / width_px
     return camera.pixels_to_ground((pixels + 0.5) * times - 0.5)
 
 
-def _pixels_after(
-    camera: Camera, width_px: int, step: FloatArray, places: FloatArray
-) -> FloatArray:
+def pixels_after(camera: Camera, width_px: int, step: FloatArray, places: FloatArray) -> FloatArray:
+    """Where terrain (N, 2) [m] is in a reduced image after a step (3,); NaN where nowhere.
+
+    The step is x, y [m], yaw [rad] of the second robot frame in the first.
+    """
     times = camera.image_size[0] / width_px
     there = camera.ground_to_pixels(se2.transform(se2.inverse(step), places))
     return np.asarray((there + 0.5) / times - 0.5)
 
 
 @lru_cache(maxsize=4)  # of the images that a camera takes one after the other
+def places_of_squares(camera: Camera, shape: tuple[int, int], size_px: int) -> FloatArray:
+    """Terrain (N, 2) [m] in the `middles` of squares of a reduced image of a shape (h, w)."""
+    return places_at(camera, shape[1], middles(shape, size_px))
+
+
+@lru_cache(maxsize=4)
 def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
     """Terrain (rows, columns, 2) [m] at the middle of every square of NODE_PX, one row beyond."""
     rows, columns = (
@@ -44,7 +42,7 @@ def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
         for length in (height, width)
     )
     nodes = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
-    return _places(camera, width, nodes).reshape(len(rows), len(columns), 2)
+    return places_at(camera, width, nodes).reshape(len(rows), len(columns), 2)
 
 
 def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[AnyArray, BoolArray]:
@@ -54,7 +52,7 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     """
     height, width = image.shape
     places = _places_of_nodes(camera, height, width)
-    there = _pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
+    there = pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
     size = places.shape[1] * NODE_PX, places.shape[0] * NODE_PX
     at_pixels = cv2.resize(there.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
     u, v = cv2.split(at_pixels[NODE_PX:, NODE_PX:][:height, :width])

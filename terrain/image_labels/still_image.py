@@ -8,7 +8,13 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera.camera import Camera
-from terrain.image_labels.carried_image import carried_back, middles, terrain_after, tiles
+from terrain.image_labels.carried_image import (
+    carried_back,
+    middles,
+    pixels_after,
+    places_of_squares,
+    tiles,
+)
 from terrain.images import to_grey
 
 WIDTH_PX = 160  # of the images that are compared: noise and compression are averaged away
@@ -63,7 +69,8 @@ class StillImage:
             agree in the place where terrain moved to: stripes along the way look alike in both.
         """
         here = middles(before.shape, TILE_PX)
-        there = terrain_after(self.camera, WIDTH_PX, step, here)
+        places = places_of_squares(self.camera, before.shape, TILE_PX)
+        there = pixels_after(self.camera, WIDTH_PX, step, places)
         moves = np.linalg.norm(there - here, axis=1) > FLOW_PX
         if before.shape != after.shape or np.count_nonzero(moves) < FEWEST_TILES:
             return None

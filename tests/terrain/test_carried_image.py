@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from odometry.geometry import se2
-from terrain.image_labels.carried_image import carried_back, middles, terrain_after, tiles
+from terrain.image_labels.carried_image import (
+    carried_back,
+    middles,
+    pixels_after,
+    places_at,
+    places_of_squares,
+    tiles,
+)
 from tests.terrain.test_still_image import SIZE, STEP, down, seen, terrain
 
 __all__ = ["terrain"]
@@ -12,8 +19,8 @@ __all__ = ["terrain"]
 
 def test_there_and_back_is_the_same_place():
     here = middles((120, 160), 16)
-    there = terrain_after(down(40), 160, STEP, here)
-    back = terrain_after(down(40), 160, se2.inverse(STEP), there)
+    there = pixels_after(down(40), 160, STEP, places_of_squares(down(40), (120, 160), 16))
+    back = pixels_after(down(40), 160, se2.inverse(STEP), places_at(down(40), 160, there))
     on_terrain = np.isfinite(back).all(axis=1)
     assert on_terrain.any()
     np.testing.assert_allclose(back[on_terrain], here[on_terrain], atol=1e-6)
