@@ -16,10 +16,10 @@ from odometry.modes.held_out_gains import WINDOW_S, gain_sums
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.traction import TractionModes
 
+# Chosen with `gain_sigmas` of `ModesConfig` on eight worlds of a generator in planar motion and on
+# husky_wheels of seeds 85 to 87 (tests/studies/modes.md): windows of 8 s as well bring nothing.
 WINDOWS_S = (4.0, 16.0)
 TOLERANCE = 0.01  # as a share: no gain is identified better
-"""Chosen with `gain_sigmas` of `ModesConfig` on eight worlds of a generator in planar motion and on
-husky_wheels of seeds 85 to 87 (tests/studies/modes.md): windows of 8 s as well bring nothing."""
 
 
 @dataclass(frozen=True)
@@ -67,15 +67,15 @@ def gain_check(
     config = config or ModesConfig()
     if modes.gain_spread is None:
         return None
-    said = modes.yaw_rates_rad_s(signals.stamps_s, signals.tread_speeds_m_s)
+    predicted = modes.yaw_rates_rad_s(signals.stamps_s, signals.tread_speeds_m_s)
     off, excess = np.zeros(len(signals), dtype=np.bool_), np.full(len(signals), np.nan)
     for mode in np.unique(leading):
         leads = leading == mode
-        errors = signals.measured[:, -1] - biases_rad_s - said[:, mode]
+        errors = signals.measured[:, -1] - biases_rad_s - predicted[:, mode]
         errors[~leads] = np.nan  # what another mode left says nothing of this one
         for window_s in WINDOWS_S:
             share, information, turned_s = gain_sums(
-                said[:, mode], errors, signals.stamps_s, window_s
+                predicted[:, mode], errors, signals.stamps_s, window_s
             )
             # turns differ from one to the next: the mean of several differs less
             turns = np.maximum(turned_s / WINDOW_S, 1.0)

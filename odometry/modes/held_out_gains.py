@@ -34,12 +34,12 @@ def gain_errors(
     ----------
     modes : TractionModes
     heard : Mapping of sequences of Heard
-        What a gyroscope heard in each mode.
+        Yaw rates that a gyroscope measured in each mode.
 
     Returns
     -------
     ((M,), float) or None
-        As a share of the gain, and [rad^2/s]; None where too little was heard.
+        As a share of the gain, and [rad^2/s]; None where too little was measured.
     """
     by_mode = [
         np.array(

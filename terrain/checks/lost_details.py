@@ -45,8 +45,8 @@ def lost_details(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Find
             "images_lost_details",
             Level.WARNING,
             f"images from {span_s[0]:.1f} to {span_s[1]:.1f} s of run time show "
-            f"{np.exp(loss):.2f} of the details that the image before them shows of the same "
-            "terrain, light apart",
+            f"{np.exp(loss):.2f} of the details, or of the finest of them, that the image before "
+            "them shows of the same terrain, light apart",
             "Cannot be determined: fog, a wet or misted lens, another focus, or an exposure that "
             "bleaches the terrain",
             "Look at these images, and leave them out of images.csv: names of terrain by them "

@@ -53,7 +53,7 @@ def test_fog_and_a_lost_focus_are_found_from_their_first_to_their_last_image(fou
     assert begin_s == pytest.approx(FROM_S, abs=0.6)
     assert end_s == pytest.approx(TO_S, abs=0.6)
     assert finding.name == "images_lost_details"
-    assert "of the details that the image before them shows of the same terrain" in finding.seen
+    assert "of the details, or of the finest of them, that the image before them" in finding.seen
 
 
 @pytest.mark.parametrize(
