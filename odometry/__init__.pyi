@@ -41,11 +41,11 @@ from .modes.track import ModeTrack, follow_modes
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, replay
 from .run import Robot, Run
-from .run_inputs import inputs_of
 from .run_span import Span, cut_run
 from .simulation.contact.drive import simulate_contact
 from .trajectory import SpatialTrajectory, Trajectory
 from .windows.config import WindowConfig
+from .windows.run_inputs import inputs_of
 from .windows.window_errors import window_errors
 from .windows.windows import windows_of
 

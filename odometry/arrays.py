@@ -1,4 +1,4 @@
-"""Array types that the packages share, and the two places of an axis of components."""
+"""Array types that the packages share, places of an axis of components, and rows in a sample."""
 
 from typing import Any
 
@@ -21,3 +21,8 @@ def components_first(vectors: AnyArray) -> AnyArray:
 def components_last(entries: AnyArray) -> AnyArray:
     """Entries (M, ...) as vectors (..., M): a view."""
     return entries.transpose(*range(1, entries.ndim), 0)
+
+
+def spread(count: int, most: int) -> IntArray:
+    """At most so many of the numbers below `count`, evenly spread, both ends among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))

@@ -11,9 +11,9 @@ import tomli_w
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
+from odometry.io.formats import check_first_line, format_line, made_text
 from odometry.io.structured import read_toml
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
-from odometry.outputs.manifest import check_first_line, format_line, made_text
 from odometry.parameter_covariance import covariance_of_table, finite_number
 from odometry.run import UNKNOWN
 

@@ -8,22 +8,9 @@ from odometry.config import block_from_table, read_toml
 from odometry.errors import ConfigError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.evaluation.relative import EvaluationConfig
+from terrain.classification.config import ClassifierConfig
 from terrain.region.region import RegionConfig
 from terrain.switch.switch import SwitchConfig
-
-
-@dataclass(frozen=True)
-class ClassifierConfig:
-    """Settings of the classifier in a run.
-
-    Attributes
-    ----------
-    own_statistics : bool
-        Features are standardised by the images of the run as they arrive, see
-        `OwnStatisticsClassifier`: for a camera unlike that of training.
-    """
-
-    own_statistics: bool = False
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
 from odometry.pose_noise import with_pose_noise
 from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import NamedTerrain, ReplayedFooting
+from odometry.terrain_sources import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config

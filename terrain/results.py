@@ -17,9 +17,10 @@ from odometry.estimation.kept_estimates import EVERY
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.io.csv_table import write_csv_blocks, write_csv_table
 from odometry.io.files import atomic_write
+from odometry.io.formats import check_format
 from odometry.io.structured import read_json
 from odometry.io.tum import write_tum
-from odometry.outputs.manifest import check_finished, check_format
+from odometry.outputs.manifest import check_finished
 from odometry.outputs.output_folder import OutputFolder
 from odometry.outputs.provenance import about_result
 from odometry.parameters import write_parameters
@@ -47,7 +48,9 @@ def write_run(result: RunResult, output: OutputFolder, reports: Sequence[CheckRe
         If a file cannot be written.
     """
     with output.writing() as part:
-        write_results(result, part, about_result(output.made, reports))
+        write_results(
+            result, part, about_result(output.made, [report.to_table() for report in reports])
+        )
         page.write_report(result, part, reports=reports)
 
 

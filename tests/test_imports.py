@@ -66,6 +66,19 @@ def test_there_is_no_circle_between_files():
     assert not any(packages_only(targets) for targets in graph().values())
 
 
+def room_of(name):
+    """The folder of a file, below its package; a file that is in no folder stands for itself."""
+    return ".".join(name.split(".")[:2])
+
+
+def test_there_is_no_circle_between_rooms():
+    rooms = {}
+    for name, targets in graph().items():
+        rooms.setdefault(room_of(name), set()).update(map(room_of, targets))
+    assert len(rooms) < len(graph()) / 5
+    TopologicalSorter({room: others - {room} for room, others in rooms.items()}).prepare()
+
+
 def test_odometry_never_imports_terrain():
     pointing_back = {
         name: target

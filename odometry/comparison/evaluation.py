@@ -18,9 +18,9 @@ from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import Fitness, fitness, measured_poses, open_loop
 from odometry.geometry import se2
 from odometry.run import Run
-from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.motion import level_path, window_motion
+from odometry.windows.run_inputs import inputs_of
 from odometry.windows.window_errors import WindowErrors, errors_of_motion
 from odometry.windows.windows import Windows
 

@@ -10,8 +10,8 @@ from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.errors import RunFolderError, TrajectoryError
 from odometry.geometry.angles import continuous_difference
 from odometry.run import Run
-from odometry.run_inputs import attitude_of
 from odometry.trajectory import SpatialTrajectory
+from odometry.windows.run_inputs import attitude_of
 
 
 def measured_poses(run: Run) -> tuple[FloatArray, FloatArray]:

@@ -9,9 +9,9 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.errors import TrajectoryError
 from odometry.evaluation.odometer_noise import OdometerNoise, measured_noise, motion_errors
 from odometry.evaluation.open_loop_errors import OpenLoopPath
-from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
+from odometry.windows.horizons import spatial_horizons
 
 DISTANCES_M = (5.0, 20.0, 100.0)
 STRIDE = 0.25  # from start to start, in distances

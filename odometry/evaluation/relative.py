@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.config import require_positive
-from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 from odometry.geometry.angles import continuous_difference
 from odometry.trajectory import Trajectory
+from odometry.windows.horizons import spatial_horizons
 
 LEAST_SPREAD = 0.1  # of the reach: positions closer than this give no heading
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.export.drive_numbers import DriveNumbers, MotionErrors, Pace, Stated
-from odometry.outputs.manifest import format_line
+from odometry.io.formats import format_line
 
 FORMAT = 1
 NOT_MEASURED = 1e6  # variance by which drivers of ROS say that a component is not measured

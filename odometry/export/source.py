@@ -11,8 +11,9 @@ import numpy as np
 from odometry.errors import ExportError, ParameterError
 from odometry.export.drive_numbers import MotionErrors, Pace
 from odometry.io.csv_table import read_csv_table
+from odometry.io.formats import check_format
 from odometry.io.structured import read_json
-from odometry.outputs.manifest import check_finished, check_format
+from odometry.outputs.manifest import check_finished
 from odometry.outputs.written_tables import changes_of
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.table import Table

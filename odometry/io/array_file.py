@@ -21,8 +21,8 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.errors import OdometryError
 from odometry.io.files import atomic_write, read_bytes
+from odometry.io.formats import check_format
 from odometry.io.structured import parsed_json
-from odometry.outputs.manifest import check_format
 
 HEADER = "header.json"
 CHECKSUM = "sha256"

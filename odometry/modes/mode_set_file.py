@@ -12,11 +12,11 @@ import tomli_w
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import ParameterError
 from odometry.io.files import atomic_write
+from odometry.io.formats import check_first_line, format_line, made_text
 from odometry.io.structured import read_toml
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
-from odometry.outputs.manifest import check_first_line, format_line, made_text
 
 FORMAT = 1  # of the file, in its first line
 LARGEST, SMALLEST = 1e9, 1e-18  # of a number, and of one above 0: a standard deviation of 1e-9

@@ -6,9 +6,9 @@ from typing import Any
 
 from odometry.errors import OdometryError, OutputError
 from odometry.io.files import check_writable
+from odometry.io.formats import is_edited
 from odometry.io.structured import read_toml
 from odometry.outputs.leftovers import remove_temporaries
-from odometry.outputs.manifest import is_edited
 from odometry.outputs.provenance import MADE_BY, RUN_FILES
 
 HEAD_BYTES = 4096  # of a PNG file with its texts, or of a text

@@ -9,14 +9,7 @@ from pathlib import Path
 from odometry.errors import OutputError
 from odometry.io.files import check_writable, naming_full
 from odometry.outputs.leftovers import is_temporary, remove_stages, remove_temporaries, stage_name
-from odometry.outputs.manifest import (
-    FINISHED,
-    NAME,
-    TO_DO,
-    UNFINISHED,
-    Manifest,
-    read_manifest,
-)
+from odometry.outputs.manifest import FINISHED, NAME, TO_DO, UNFINISHED, Manifest, read_manifest
 from odometry.outputs.own_names import files_of_version_0_4, has_own_name
 from odometry.outputs.provenance import Made
 from odometry.outputs.written_tables import table_sums

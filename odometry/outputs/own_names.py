@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from odometry.errors import OdometryError
+from odometry.io.formats import PROGRAM
 from odometry.io.structured import read_json
-from odometry.outputs.manifest import PROGRAM
 
 RUN_NAMES = (
     *("odometer.csv", "odometer.tum", "estimate.csv", "estimate.tum", "terrain.csv"),

@@ -10,10 +10,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from odometry.checks.findings.finding import CheckReport
 from odometry.io.csv_columns import unquoted_text
+from odometry.io.formats import PROGRAM
 from odometry.io.run_folder import FILES
-from odometry.outputs.manifest import PROGRAM
 
 PACKAGES = ("numpy", "scipy", "scikit-learn", "scikit-image", "filterpy")
 OPENCV = ("opencv-python-headless", "opencv-python", "opencv-contrib-python-headless")
@@ -105,9 +104,9 @@ def _one_line(text: str) -> str:
     return "".join(c if c.isprintable() or c == " " else ascii(c)[1:-1] for c in text)
 
 
-def about_result(made: Made, reports: Sequence[CheckReport]) -> dict[str, Any]:
-    """Keys that are added to a result file, of plain values."""
-    return {"made": made.to_table(), "check": [report.to_table() for report in reports]}
+def about_result(made: Made, checks: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Keys that are added to a result file: what made it, and tables of the checks of its runs."""
+    return {"made": made.to_table(), "check": list(checks)}
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,11 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
 from odometry.run import Run
-from odometry.run_inputs import inputs_with_poses
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.measured_poses import measured_poses, measured_positions, positions_at
+from odometry.windows.run_inputs import inputs_with_poses
 from odometry.windows.spans import touched
 from odometry.windows.turns import counted_turns
 

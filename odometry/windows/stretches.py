@@ -10,10 +10,10 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
-from odometry.evaluation.stretches import spatial_horizons
 from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.gyroscope_yaw import yaw_rates_of
+from odometry.windows.horizons import spatial_horizons
 from odometry.windows.record import (
     FEW_POSES,
     LEAST_POSITIONS,

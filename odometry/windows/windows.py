@@ -9,11 +9,11 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
-from odometry.evaluation.stretches import spatial_horizons
 from odometry.geometry import se2
 from odometry.models.inputs import Inputs, joined
 from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
+from odometry.windows.horizons import spatial_horizons
 from odometry.windows.record import STATIONARY, Record, record_of, straddling, summed, words
 
 STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from odometry.outputs.leftovers import remove_foreign_stages
-from terrain.batch.connection import ONE_AT_A_TIME, answers, connected, failure
 from terrain.batch.job import FAILED, Job, Outcome, run_job
+from terrain.dask_connection import ONE_AT_A_TIME, answers, connected, failure
 from terrain.errors import BatchError
 
 NAMED = 3  # of what is missing

@@ -7,12 +7,11 @@ from itertools import product
 import numpy as np
 from scipy.stats import t as student
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, spread
 from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.mount_fit import MountFit, too_wide
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.lens_models import Lens
-from terrain.checks.image_files import spread
 from terrain.errors import CalibrationError
 
 AGAIN = 2  # features are tracked again with the mount found

@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from tqdm import tqdm
 
-from odometry.arrays import ByteImage, FloatArray, IntArray
+from odometry.arrays import ByteImage, FloatArray, IntArray, spread
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.calibration.warp import Warp, followed
 from terrain.camera_files.lens_models import Lens
-from terrain.checks.image_files import spread
 from terrain.errors import CalibrationError, ImageError
 from terrain.images import read_image, to_grey
 

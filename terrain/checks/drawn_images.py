@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import ByteImage, FloatArray
+from odometry.arrays import ByteImage, FloatArray, spread
 from odometry.run import Robot, Run
 from terrain.camera.camera import Camera
-from terrain.checks.image_files import spread
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image
 from terrain.region.region import NoRegion, Region, RegionConfig, predict_region

@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray, spread
 from odometry.run import Run
 from terrain.camera.camera import Camera
-from terrain.checks.image_files import spread
 from terrain.checks.terrain_views import FEWEST, Pixels, TerrainViews
 
 PAIRS, FEWEST_PAIRS = 32, 16  # of images that are compared, some milliseconds each

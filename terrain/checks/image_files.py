@@ -10,7 +10,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, IntArray
+from odometry.arrays import AnyArray, spread
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.run import Run
 from terrain.checks.image_values import FLAT, grey_of
@@ -60,11 +60,6 @@ def sample_images(run: Run) -> tuple[SampledImage, ...]:
         _sampled(int(row), float(stamps_s[row]), run.folder / str(names[row]))
         for row in spread(len(run.images), FILES)
     )
-
-
-def spread(count: int, most: int) -> IntArray:
-    """At most so many of the numbers below `count`, evenly spread, both ends among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
 
 
 def decode(image: SampledImage) -> AnyArray | None:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray, spread
 from odometry.checks.findings.finding import Finding, Level
 from terrain.calibration.flow_solver import GroundFlow, Solution, solve_mount
 from terrain.calibration.tracks import Tracks
@@ -15,7 +15,6 @@ from terrain.camera.camera import Camera
 from terrain.camera.distortion import undistort
 from terrain.checks.ground_steps import STEADY, GroundSteps, moved_terrain
 from terrain.checks.image_agreement import ImageMotion
-from terrain.checks.image_files import spread
 from terrain.checks.terrain_views import Pixels
 
 # Terrain that changes its size from image to image, of 1 and in standard deviations of the median:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from odometry.arrays import spread
 from odometry.checks.copies.copied_columns import NO_GYROSCOPES
 from odometry.checks.copies.copied_turns import without_gyroscope
 from odometry.checks.findings.finding import CheckReport, Finding, Level
@@ -24,7 +25,6 @@ from terrain.checks.image_files import (
     frozen,
     outside_of_odometry,
     sample_images,
-    spread,
 )
 from terrain.checks.image_gaps import image_gaps
 from terrain.checks.image_motion import image_motion

@@ -10,8 +10,8 @@ from joblib import Parallel, cpu_count, delayed
 from tqdm import tqdm
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
-from terrain.batch.connection import ONE_AT_A_TIME, answers, connected, failure
 from terrain.classification.features import FeatureSettings, feature_matrix
+from terrain.dask_connection import ONE_AT_A_TIME, answers, connected, failure
 from terrain.errors import BatchError, PatchError
 from terrain.images import to_grey
 from terrain.one_thread import one_thread

@@ -9,10 +9,10 @@ from odometry.arrays import ByteImage, FloatArray
 from odometry.errors import ConfigError
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.config import ClassifierConfig
 from terrain.classification.metric import ClippedScaler
 from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.trained import Classifier
-from terrain.config import ClassifierConfig
 
 LEAST = 0.01  # of a deviation in training: a feature that varies less is taken as in training
 HALF_AT = 50  # patches: with so many the camera's own statistics have half of their weight

@@ -116,7 +116,7 @@ def about(made: "Made", folder: Path | None = None) -> dict[str, Any]:
     """
     from odometry.outputs.provenance import about_result
 
-    return about_result(made, checks_made(folder))
+    return about_result(made, [report.to_table() for report in checks_made(folder)])
 
 
 def comment(made: "Made") -> str:

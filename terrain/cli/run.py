@@ -84,7 +84,8 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         from dataclasses import replace
 
         say_that_it_begins()
-        from terrain.config import ClassifierConfig, Config
+        from terrain.classification.config import ClassifierConfig
+        from terrain.config import Config
         from terrain.run_options import RunOptions
         from terrain.run_presets import run_preset
 

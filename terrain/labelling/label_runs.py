@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.parameters import ParameterSet
 from odometry.run import Run
-from odometry.run_terrains import NamedTerrain
+from odometry.terrain_sources import NamedTerrain
 from terrain.camera.camera import Camera
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.feel.felt import SILENT, FeltWindows
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
-from odometry.run_terrains import NamedTerrain
+from odometry.terrain_sources import NamedTerrain
 from odometry.trajectory import Trajectory
 from terrain.image_labels.image_label import ImageLabel
 from terrain.result.contradictions_so_far import Contradiction, ContradictionsSoFar

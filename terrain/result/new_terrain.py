@@ -13,7 +13,8 @@ from odometry.learned_parameters import learned_parameters
 from odometry.parameters import ParameterSet
 from odometry.pipeline import Estimator, replay
 from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import Footing, ReplayedFooting
+from odometry.run_terrains import Footing
+from odometry.terrain_sources import ReplayedFooting
 from terrain.result.contradictions_so_far import Contradiction
 from terrain.result.run_result import RunResult
 

@@ -17,7 +17,7 @@ from odometry.modes.velocity import VelocityModes
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.run_terrains import NamedTerrain, labelled_terrain
+from odometry.terrain_sources import NamedTerrain, labelled_terrain
 from terrain.camera.camera import Camera
 from terrain.classification.own_statistics import used_as
 from terrain.classification.trained import Classifier

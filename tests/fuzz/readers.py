@@ -15,9 +15,9 @@ from odometry.modes.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run
-from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.windows.config import WindowConfig
+from odometry.windows.run_inputs import inputs_of
 from odometry.windows.windows import windows_of
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import RunFolderError
-from odometry.run_terrains import NamedTerrain, labelled_terrain
+from odometry.terrain_sources import NamedTerrain, labelled_terrain
 from tests.odometry.modes.mode_drives import run_of_tables
 
 STAMPS_S = np.arange(6.0)

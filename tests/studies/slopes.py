@@ -27,13 +27,13 @@ from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
 from odometry.run import Run
-from odometry.run_inputs import inputs_of
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.simulation.courses import STEP_S, make_course, slope_paths
 from odometry.simulation.record import ContactSensors, write_contact_run
 from odometry.windows.config import WindowConfig
+from odometry.windows.run_inputs import inputs_of
 from odometry.windows.windows import windows_of
 
 DATA = Path(__file__).parents[2] / "data"

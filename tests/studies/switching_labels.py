@@ -22,7 +22,7 @@ from tqdm import tqdm
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import reference_of, score
 from odometry.pipeline import ConstantTerrain, replay
-from odometry.run_terrains import labelled_terrain
+from odometry.terrain_sources import labelled_terrain
 from terrain.config import Config
 from tests.studies.switching_courses import LabellingWatcher, TrueFooting, make_course
 

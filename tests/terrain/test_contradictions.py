@@ -9,8 +9,8 @@ from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import NamedTerrain
 from odometry.table import Table
+from odometry.terrain_sources import NamedTerrain
 from odometry.trajectory import Trajectory
 from terrain.image_labels.image_label import ImageLabel
 from terrain.main_job import run_odometry

@@ -16,9 +16,9 @@ from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
-from odometry.run_inputs import inputs_of
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
+from odometry.windows.run_inputs import inputs_of
 from odometry.windows.window_errors import window_errors
 
 

@@ -12,8 +12,8 @@ from odometry.effects.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
 from odometry.gap.prepare.simulate import residuals, simulated_poses
 from odometry.geometry import se2
-from odometry.run_inputs import inputs_of
 from odometry.windows.dense import dense_windows_of
+from odometry.windows.run_inputs import inputs_of
 
 ARM = np.array([0.4, -0.3])
 WIDTH_M = 0.87  # between the ICRs of the true robot

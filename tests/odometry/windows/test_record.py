@@ -5,10 +5,10 @@ import pytest
 
 from odometry.errors import WindowError
 from odometry.run import UNKNOWN, Run
-from odometry.run_inputs import inputs_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.measured_poses import close_pairs
 from odometry.windows.record import UNKNOWN_TURNS, record_of
+from odometry.windows.run_inputs import inputs_of
 
 CONFIG = WindowConfig(pose_gap_s=0.5)
 SLOW = 2.0**-10  # [m/s]: turns too slow for their count to be in doubt

@@ -61,7 +61,7 @@ def test_a_worker_that_cannot_do_the_jobs_is_reported_in_one_line(
     scheduler, curvy_run, job_of, tmp_path, monkeypatch
 ):
     job = job_of(curvy_run)
-    monkeypatch.setattr("terrain.batch.connection.WAITS_S", 0.3)
+    monkeypatch.setattr("terrain.dask_connection.WAITS_S", 0.3)
     assert "has no workers; start some with: dask worker" in refused([job], scheduler)
     older = "import odometry.outputs.provenance as made; made.version = lambda name: '0.1'"
     with started_workers(scheduler, 1, before=older):
@@ -81,7 +81,7 @@ def test_a_worker_that_cannot_do_the_jobs_is_reported_in_one_line(
 def test_a_scheduler_that_does_not_answer_is_reported_in_one_line(
     job_of, curvy_run, address, monkeypatch
 ):
-    monkeypatch.setattr("terrain.batch.connection.CONNECTS_S", 0.5)
+    monkeypatch.setattr("terrain.dask_connection.CONNECTS_S", 0.5)
     message = refused([job_of(curvy_run)], address)
     assert message.startswith(f"--scheduler {address}: no scheduler answers there")
     assert "dask scheduler" in message
@@ -98,7 +98,7 @@ def test_a_client_that_failed_is_gone_before_the_next_one(job_of, curvy_run, mon
             super().__init__(*arguments, **options)
 
     monkeypatch.setattr(distributed, "Client", Watched)
-    monkeypatch.setattr("terrain.batch.connection.CONNECTS_S", 0.2)
+    monkeypatch.setattr("terrain.dask_connection.CONNECTS_S", 0.2)
     gc.disable()
     try:
         for _ in range(2):

@@ -7,9 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
+from odometry.arrays import spread
 from odometry.checks.findings.finding import Level
 from odometry.run import Run
-from terrain.checks.image_files import FILES, decode, outside_of_odometry, sample_images, spread
+from terrain.checks.image_files import FILES, decode, outside_of_odometry, sample_images
 
 
 def half(data):

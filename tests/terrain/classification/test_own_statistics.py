@@ -5,6 +5,7 @@ from click.testing import CliRunner
 
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.config import ClassifierConfig
 from terrain.classification.own_statistics import (
     Moments,
     OwnStatisticsClassifier,
@@ -13,7 +14,6 @@ from terrain.classification.own_statistics import (
     used_as,
 )
 from terrain.cli.classify import classify
-from terrain.config import ClassifierConfig
 from terrain.errors import ImageError
 
 SIZE = 32

@@ -3,7 +3,7 @@ import tomllib
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.outputs.manifest import check_first_line, check_format, format_line, stated_format
+from odometry.io.formats import check_first_line, check_format, format_line, stated_format
 
 
 def test_the_line_is_a_comment_that_gives_back_kind_and_version():
