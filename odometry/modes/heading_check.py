@@ -93,8 +93,8 @@ def heading_check(run: Run) -> HeadingCheck | None:
     yaw_rate = run.yaw_rate
     if yaw_rate is None or run.pose is None or len(yaw_rate.stamps_s) < LEAST_POSES:
         return None
-    heard = without_spikes(yaw_rate)
-    gyroscope = gyroscope_of(heard)
+    yaw_rate = without_spikes(yaw_rate)
+    gyroscope = gyroscope_of(yaw_rate)
     measured = np.isfinite(run.pose["yaw"])
     if gyroscope is None or measured.sum() < LEAST_POSES:
         return None
@@ -108,7 +108,7 @@ def heading_check(run: Run) -> HeadingCheck | None:
     if sigma_rad is None:
         return None
     turn_rad = np.append(0.0, np.cumsum(turned))
-    rate_rad_s = np.interp(stamps_s, heard.stamps_s, heard.yaw_rate_rad_s)
+    rate_rad_s = np.interp(stamps_s, yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s)
     table = np.column_stack([stamps_s, turn_rad, rate_rad_s, apart])
     piece = np.append(0, np.cumsum(~chained))
     ends_s = np.arange(stamps_s[0] + WINDOW_S, stamps_s[-1] + 1e-9, EVERY_S)

@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.innovation_test import windowed
 from odometry.modes.response import lagged
 from odometry.modes.traction import RIGHT_TURN, TractionModes, requested, turns_of
-from odometry.modes.yaw_rate_noise import Heard
+from odometry.modes.yaw_rate_noise import YawRateStretch
 
 WINDOW_S = 4.0  # as long as a turn
 LEAST_RAD_S = 0.05  # predicted: less is no turn
@@ -21,7 +21,7 @@ OMEGA = 2  # row of the gains
 
 
 def gain_errors(
-    modes: TractionModes, heard: Mapping[str, Sequence[Heard]]
+    modes: TractionModes, measured: Mapping[str, Sequence[YawRateStretch]]
 ) -> tuple[FloatArray, float] | None:
     """Spread and power of the errors of gains: their variance is spread^2 + power / information.
 
@@ -33,7 +33,7 @@ def gain_errors(
     Parameters
     ----------
     modes : TractionModes
-    heard : Mapping of sequences of Heard
+    measured : Mapping of sequences of YawRateStretch
         Yaw rates that a gyroscope measured in each mode.
 
     Returns
@@ -43,7 +43,11 @@ def gain_errors(
     """
     by_mode = [
         np.array(
-            [window for part in _held_out(modes, place, heard[name]) for window in _windows(*part)]
+            [
+                window
+                for part in _held_out(modes, place, measured[name])
+                for window in _windows(*part)
+            ]
         ).reshape(-1, 2)
         for place, name in enumerate(modes.names)
     ]
@@ -98,35 +102,35 @@ def _windows(
 
 
 def _held_out(
-    modes: TractionModes, place: int, heard: Sequence[Heard]
+    modes: TractionModes, place: int, measured: Sequence[YawRateStretch]
 ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
     """Stamps, predicted yaw rates and errors (N,) of each part that is left out in turn."""
     gains, variance = modes.gains[place, :, OMEGA], modes.measurement_variance[3]
-    tables = [_table(one, float(modes.lag_s[place])) for one in heard]
+    tables = [_table(one, float(modes.lag_s[place])) for one in measured]
     first = np.zeros(8)
     first[1] = np.mean(gains[:, 1])
-    every = [_normal(table, one, one.driving) for table, one in zip(tables, heard, strict=True)]
-    for table, one in zip(tables, heard, strict=True):
-        for part in [one.driving] if len(heard) > 1 else _quarters(one):
+    every = [_normal(table, one, one.driving) for table, one in zip(tables, measured, strict=True)]
+    for table, one in zip(tables, measured, strict=True):
+        for part in [one.driving] if len(measured) > 1 else _quarters(one):
             rest = np.sum(every, axis=0) - _normal(table, one, part)
             prior = np.eye(8) * variance / USUAL**2
             said = table @ np.linalg.solve(rest[:, :8] + prior, rest[:, 8] + prior @ first)
             yield one.stamps_s, said, np.where(part, one.yaw_rates - said, np.nan)
 
 
-def _normal(table: FloatArray, one: Heard, rows: BoolArray) -> FloatArray:
+def _normal(table: FloatArray, one: YawRateStretch, rows: BoolArray) -> FloatArray:
     """Normal equations (8, 9) of some rows: the square matrix, and the right-hand side."""
     return table[rows].T @ np.column_stack([table, one.yaw_rates])[rows]
 
 
-def _quarters(one: Heard) -> list[BoolArray]:
+def _quarters(one: YawRateStretch) -> list[BoolArray]:
     """Rows (N,) while driving of each quarter of the time."""
     since_s = one.stamps_s - one.stamps_s[0]
     part = np.minimum((PARTS * since_s / since_s[-1]).astype(np.int64), PARTS - 1)
     return [one.driving & (part == number) for number in range(PARTS)]
 
 
-def _table(one: Heard, lag_s: float) -> FloatArray:
+def _table(one: YawRateStretch, lag_s: float) -> FloatArray:
     """What each gain of the yaw rate is multiplied by (N, 8): two shared, three for each side."""
     terms = requested(one.tread_speeds_m_s, one.track_width)
     right = (turns_of(one.tread_speeds_m_s) == RIGHT_TURN)[:, None]

@@ -12,10 +12,15 @@ from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.held_out_gains import gain_errors
-from odometry.modes.mode_windows import heard_by_mode, inside, scenes_by_mode
+from odometry.modes.mode_windows import inside, scenes_by_mode, yaw_rates_by_mode
 from odometry.modes.response import SHORTEST_LAG_S, lagged
 from odometry.modes.traction import TractionModes, requested, turns_of, twists_of
-from odometry.modes.yaw_rate_noise import LASTING_S, Heard, YawRateNoise, estimated_yaw_rate_noise
+from odometry.modes.yaw_rate_noise import (
+    LASTING_S,
+    YawRateNoise,
+    YawRateStretch,
+    estimated_yaw_rate_noise,
+)
 from odometry.run import Run
 from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.dense_noise import FIRST_GUESS, Noise, estimated_noise, whitening
@@ -59,13 +64,13 @@ class TractionFit:
 
 def fitted(
     scenes: Sequence[DenseWindows],
-    heard: Sequence[Heard],
+    measured: Sequence[YawRateStretch],
     noise: Noise,
     yaw_rate_noise: YawRateNoise,
     *,
     paper: bool = False,
 ) -> TractionFit:
-    """Gains and lag, 0 with `paper`, of the windows of scenes and what a gyroscope heard."""
+    """Gains and lag, 0 with `paper`, of the windows of scenes and yaw rates of a gyroscope."""
     parameter = _parameters(paper=paper)
     whiteners = [whitening(scene, noise) for scene in scenes]
 
@@ -81,7 +86,7 @@ def fitted(
         ]
         yaw_rates = [
             one.errors(gains, lag_s) / np.sqrt(yaw_rate_noise.variances(one.accelerations_m_s2))
-            for one in heard
+            for one in measured
         ]
         prior = (values - first)[:-1] / USUAL
         return np.concatenate([*poses, *yaw_rates, prior], axis=None)
@@ -162,13 +167,13 @@ def identify_traction_modes(
     width = robot_of(runs).track_width
     check_no_run_twice(runs)
     horizon_s, scenes = scenes_by_mode(runs, paper=paper)
-    heard = heard_by_mode(runs)
+    measured = yaw_rates_by_mode(runs)
     noise, of_yaw_rate = Noise(*np.sqrt(FIRST_GUESS).tolist()), FIRST_YAW_RATE_NOISE
     bar = tqdm(total=ROUNDS * len(scenes), unit="fit", disable=None if show_progress else True)
     for _ in range(ROUNDS):
         fits: dict[str, TractionFit] = {}
         for name, of in scenes.items():
-            fits[name] = fitted(of, heard[name], noise, of_yaw_rate, paper=paper)
+            fits[name] = fitted(of, measured[name], noise, of_yaw_rate, paper=paper)
             bar.update()
         pairs = [
             (scene, residuals(fit.gains, fit.lag_s, scene))
@@ -179,7 +184,7 @@ def identify_traction_modes(
         errors = [
             (one, one.errors(fit.gains, fit.lag_s))
             for name, fit in fits.items()
-            for one in heard[name]
+            for one in measured[name]
         ]
         of_yaw_rate = estimated_yaw_rate_noise(errors)
     bar.close()
@@ -200,7 +205,7 @@ def identify_traction_modes(
     )
     if paper:
         return modes
-    found = gain_errors(modes, heard)
+    found = gain_errors(modes, measured)
     return modes if found is None else replace(modes, gain_spread=found[0], gain_power=found[1])
 
 

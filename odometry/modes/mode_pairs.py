@@ -43,8 +43,8 @@ def pairs(modes: VelocityModes | TractionModes, runs: Sequence[Run]) -> tuple[Pa
     if isinstance(modes, VelocityModes):
         seconds = _velocity_seconds(modes, speeds, step_s)
     else:
-        heard = any(run.yaw_rate is not None for run in runs)
-        seconds = _traction_seconds(modes, speeds, step_s if heard else np.inf)
+        has_gyroscope = any(run.yaw_rate is not None for run in runs)
+        seconds = _traction_seconds(modes, speeds, step_s if has_gyroscope else np.inf)
     seconds = np.maximum(seconds, seconds.T)
     found = [
         Pair((first, modes.names[j]), float(seconds[i, j]))

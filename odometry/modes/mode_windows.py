@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, BoolArray, IntArray
 from odometry.errors import IdentificationError, WindowError
 from odometry.modes.bank_inputs import STANDING_M_S
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
-from odometry.modes.yaw_rate_noise import Heard, heard_of
+from odometry.modes.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
@@ -62,13 +62,13 @@ def _fewer_poses(scene: DenseWindows) -> DenseWindows:
     return replace(scene, windows=scene.windows[:, kept])
 
 
-def heard_by_mode(runs: Sequence[Run]) -> dict[str, list[Heard]]:
+def yaw_rates_by_mode(runs: Sequence[Run]) -> dict[str, list[YawRateStretch]]:
     """Stretches of each mode with a gyroscope."""
-    found: dict[str, list[Heard]] = {}
+    found: dict[str, list[YawRateStretch]] = {}
     for run in runs:
         for name, rows in stretches_by_label(run, row_terrains(run)):
-            heard = heard_of(run, rows)
-            found.setdefault(name, []).extend([] if heard is None else [heard])
+            stretch = yaw_rate_stretch_of(run, rows)
+            found.setdefault(name, []).extend([] if stretch is None else [stretch])
     return found
 
 

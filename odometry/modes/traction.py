@@ -1,8 +1,8 @@
 """Modes of small traction changes: poses driven by the gains of each mode (Salvi 2024, III-B).
 
 The state is x, y, yaw, the yaw rate and the bias of the gyroscope. That of the paper is the pose
-alone; with the yaw rate a gyroscope can be heard, and the robot may turn a little later than it was
-commanded.
+alone; with the yaw rate a gyroscope can update it, and the robot may turn a little later than it
+was commanded.
 """
 
 from dataclasses import dataclass, replace

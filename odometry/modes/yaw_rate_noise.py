@@ -17,7 +17,7 @@ NOT_MEASURED = 1.0  # [rad^2/s^2] where no run has a gyroscope: it hardly counts
 
 
 @dataclass(frozen=True)
-class Heard:
+class YawRateStretch:
     """A stretch of one mode with a gyroscope.
 
     Attributes
@@ -73,7 +73,7 @@ class YawRateNoise:
         return self.variance * (1 + self.growth * accelerations_m_s2**2)
 
 
-def heard_of(run: Run, rows: IntArray) -> Heard | None:
+def yaw_rate_stretch_of(run: Run, rows: IntArray) -> YawRateStretch | None:
     """Rows of a run without a gap; None without a gyroscope, or where it did not drive."""
     measured = yaw_rates_of(run)
     if measured is None:
@@ -87,10 +87,12 @@ def heard_of(run: Run, rows: IntArray) -> Heard | None:
     step_s = float(np.median(np.diff(stamps_s[driving])))
     accelerations = accelerations_m_s2(stamps_s, speeds)[driving]
     width = run.robot.track_width
-    return Heard(stamps_s, speeds, yaw_rates, driving, step_s, accelerations, width)
+    return YawRateStretch(stamps_s, speeds, yaw_rates, driving, step_s, accelerations, width)
 
 
-def estimated_yaw_rate_noise(stretches: Sequence[tuple[Heard, FloatArray]]) -> YawRateNoise:
+def estimated_yaw_rate_noise(
+    stretches: Sequence[tuple[YawRateStretch, FloatArray]],
+) -> YawRateNoise:
     """White noise with as much power as the errors (K,) of stretches have that last.
 
     Taken as noise of the variance that they have at each sample, fifty samples a second would count

@@ -181,10 +181,10 @@ def turns_by_gyroscope(
 def _calibrated(gyroscope: Gyroscope, pairs: ClosePairs) -> _Calibration | None:
     """Scale and bias of a gyroscope by the pairs; None where they are few or turned too little."""
     turn, _, _, silent_s = gyroscope.between(pairs.begin_s, pairs.end_s)
-    heard = pairs.where(silent_s == 0)
-    if not heard.tell_a_scale:
+    known = pairs.where(silent_s == 0)
+    if not known.tell_a_scale:
         return None
-    turn, turned, lasts_s = turn[silent_s == 0], heard.turned_rad, heard.end_s - heard.begin_s
+    turn, turned, lasts_s = turn[silent_s == 0], known.turned_rad, known.end_s - known.begin_s
     bias = slope(turn - turned, lasts_s)
     scale = slope(turned, turn - bias * lasts_s)
     errors = turn - bias * lasts_s - turned

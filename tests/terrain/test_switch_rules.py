@@ -21,7 +21,7 @@ class AnyDrive(RuleBasedStateMachine):
         super().__init__()
         self.switch = Switch("grass", FOOTPRINT, SwitchConfig(labels_in_row=self.needed))
         self.pose, self.stamp_s, self.travel_m = np.zeros(3), 0.0, 0.0
-        self.heard, self.path = [], []
+        self.labels, self.path = [], []
         self.confirmed = {"grass"}
 
     @rule(
@@ -36,8 +36,8 @@ class AnyDrive(RuleBasedStateMachine):
             place = self.pose[:2] + ahead_m * heading
             place_label = PlaceLabel(label, self.stamp_s, self.travel_m, place, ahead_m)
             self.switch = self.switch.add_label(place_label)
-            self.heard.append(label)
-            if self.heard[-max(1, self.needed) :] == [label] * max(1, self.needed):
+            self.labels.append(label)
+            if self.labels[-max(1, self.needed) :] == [label] * max(1, self.needed):
                 self.confirmed.add(label)
         assert self.switch.in_force == in_force  # seeing alone changes nothing
 

@@ -19,8 +19,8 @@ def gyro_tilted(recording, onset_s, rng):  # noqa: ARG001
     """The IMU came loose: its z axis leans by 20 to 45 degrees."""
     table, lean_rad = recording["odometry"], np.deg2rad(rng.uniform(20.0, 45.0))
     rate = np.gradient(table["roll"], table["t"])
-    heard = np.cos(lean_rad) * table["gyro_z"] + np.sin(lean_rad) * rate
-    return recording.with_columns("odometry", gyro_z=heard)
+    measured = np.cos(lean_rad) * table["gyro_z"] + np.sin(lean_rad) * rate
+    return recording.with_columns("odometry", gyro_z=measured)
 
 
 def gyro_on_its_side(recording, onset_s, rng):  # noqa: ARG001

@@ -114,8 +114,8 @@ def gyro_clock_is_slow(recording, onset_s, rng):
     """Its values come later and later."""
     table = recording["odometry"]
     late_s = rng.uniform(0.01, 0.03) * np.maximum(table["t"] - onset_s, 0.0)
-    heard = np.interp(table["t"] - late_s, table["t"], table["gyro_z"])
-    return _with_gyro(recording, heard)
+    measured = np.interp(table["t"] - late_s, table["t"], table["gyro_z"])
+    return _with_gyro(recording, measured)
 
 
 def gyro_is_coarse(recording, onset_s, rng):  # noqa: ARG001

@@ -116,8 +116,8 @@ def written(world, motion, rng, folder):
     """The folder of a run: the sensors' record, a gyroscope of this world, the labels."""
     noise = rng.normal(0.0, world.gyro_sigma_rad_s, len(motion.yaw_rates_rad_s))
     rates = motion.yaw_rates_rad_s + noise + rng.normal(0.0, world.gyro_bias_rad_s)
-    heard = Motion(motion.step_s, motion.commands_m_s, motion.poses, rates, motion.labels)
-    return record(folder, heard, world.body, {}, rng=rng, noise=1.0)
+    measured = Motion(motion.step_s, motion.commands_m_s, motion.poses, rates, motion.labels)
+    return record(folder, measured, world.body, {}, rng=rng, noise=1.0)
 
 
 def worlds():

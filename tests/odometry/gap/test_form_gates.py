@@ -96,20 +96,20 @@ def test_stamps_off_by_less_than_a_period_are_no_name_beside_late_treads(
     assert is_resolved(added, [], scenes) == ""
 
 
-@pytest.mark.parametrize("heard", [False, True])
-def test_a_clock_beside_late_treads_needs_a_gyroscope(heard):
+@pytest.mark.parametrize("has_gyroscope", [False, True])
+def test_a_clock_beside_late_treads_needs_a_gyroscope(has_gyroscope):
     """A lag that changes over the run is a clock that runs fast, to first order."""
-    scenes = [SimpleNamespace(reported_turns=np.zeros(1) if heard else None)]
+    scenes = [SimpleNamespace(reported_turns=np.zeros(1) if has_gyroscope else None)]
     drift, constant = (
         Added(of(), np.array(values))
         for of, values in ((ClockDrift, [0.2, -0.004]), (TimeOffset, [0.2]))
     )
     lag, wheels = Added(ActuatorLag(), np.array([0.3])), Added(WheelScale(), np.ones(2))
-    assert (is_of_stamps(drift, [lag], scenes) == "") == heard
+    assert (is_of_stamps(drift, [lag], scenes) == "") == has_gyroscope
     assert is_of_stamps(drift, [wheels], scenes) == ""
     assert is_of_stamps(constant, [lag], scenes) == ""
     one_side = Added(DelayBySide(), np.array([0.0, 0.2]))
-    assert (is_of_stamps(constant, [one_side], scenes) == "") == heard
+    assert (is_of_stamps(constant, [one_side], scenes) == "") == has_gyroscope
 
 
 @pytest.mark.parametrize(("of_names", "stands"), [(63.0, False), (77.0, True), (100.0, True)])

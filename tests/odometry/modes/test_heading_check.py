@@ -20,10 +20,12 @@ def run_of(rng, *, bias_rad_s=0.0, scale=1.0, late_s=0.0, amplitude=0.6, jump_ra
     omega = amplitude * np.sin(2 * np.pi * t / 7.3) + 0.3 * amplitude * np.sin(2 * np.pi * t / 2.9)
     yaw = np.append(0.0, np.cumsum((omega[1:] + omega[:-1]) / 2) * STEP_S)
     late = t >= from_s
-    heard = np.where(late, scale * omega + bias_rad_s, omega) + NOISE_RAD_S * rng.normal(size=SIZE)
+    measured = np.where(late, scale * omega + bias_rad_s, omega) + NOISE_RAD_S * rng.normal(
+        size=SIZE
+    )
     seen = np.interp(np.where(late, t - late_s, t), t, yaw)[::5]
     seen = seen + NOISE_RAD * rng.normal(size=len(seen)) + jump_rad * (t[::5] >= 30.0)
-    odometry = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": heard}
+    odometry = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": measured}
     wrapped = np.angle(np.exp(1j * (seen + 3.0)))
     pose = {"t": t[::5], "x": 0 * seen, "y": 0 * seen, "yaw": wrapped}
     pose["window"] = (t[::5] >= 30.0).astype(float)

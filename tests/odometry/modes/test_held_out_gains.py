@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.held_out_gains import gain_errors
-from odometry.modes.yaw_rate_noise import Heard
+from odometry.modes.yaw_rate_noise import YawRateStretch
 from tests.odometry.modes.mode_examples import traction_set
 
 STEP_S, WIDTH, SIZE = 0.02, 0.5, 6000
@@ -12,7 +12,7 @@ INFORMATION = 4.0 * 0.6**2  # of a window at 0.6 rad/s
 MODES = traction_set((0.5, 0.8)).modes
 
 
-def heard(turn, rng, noise=0.0, spread=0.0):
+def stretch_of(turn, rng, noise=0.0, spread=0.0):
     """A stretch of 2 min in turns of 4 s to both sides, of another gain in each."""
     t = STEP_S * np.arange(SIZE)
     number = (t / 4).astype(int)
@@ -21,7 +21,7 @@ def heard(turn, rng, noise=0.0, spread=0.0):
     gains = turn * (1 + spread * rng.normal(size=number[-1] + 1)[number])
     rates = gains * 2 * half / WIDTH + noise * rng.normal(size=SIZE)
     driving = np.ones(SIZE, dtype=bool)
-    return Heard(t, speeds, rates, driving, STEP_S, np.zeros(SIZE), WIDTH)
+    return YawRateStretch(t, speeds, rates, driving, STEP_S, np.zeros(SIZE), WIDTH)
 
 
 def found(seed=3, stretches=2, **errors):
@@ -29,7 +29,10 @@ def found(seed=3, stretches=2, **errors):
     turns = dict(zip(MODES.names, (0.5, 0.8), strict=True))
     return gain_errors(
         MODES,
-        {name: [heard(of, rng, **errors) for _ in range(stretches)] for name, of in turns.items()},
+        {
+            name: [stretch_of(of, rng, **errors) for _ in range(stretches)]
+            for name, of in turns.items()
+        },
     )
 
 
@@ -52,11 +55,14 @@ def test_noise_of_a_yaw_rate_counts_by_its_power():
 
 def test_a_stretch_of_another_gain_is_off_by_it_where_it_is_held_out():
     rng = np.random.default_rng(5)
-    stretches = {"none": [heard(0.5, rng), heard(0.55, rng)], "all": [heard(0.8, rng)] * 2}
+    stretches = {
+        "none": [stretch_of(0.5, rng), stretch_of(0.55, rng)],
+        "all": [stretch_of(0.8, rng)] * 2,
+    }
     of_none, of_all = deviation(*gain_errors(MODES, stretches))
     assert of_none == pytest.approx(0.1, rel=0.2)  # 0.05 alone within the stretches
     assert of_all == pytest.approx(0.1 / np.sqrt(2), rel=0.2)  # that of all windows: no less
 
 
-def test_too_little_heard_determines_nothing():
+def test_too_little_measured_determines_nothing():
     assert gain_errors(MODES, {name: [] for name in MODES.names}) is None

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.errors import IdentificationError, WindowError
 from odometry.modes.identify_traction import fitted, identify_traction_modes
-from odometry.modes.mode_windows import MOST_POSES, heard_by_mode, scenes_by_mode
+from odometry.modes.mode_windows import MOST_POSES, scenes_by_mode, yaw_rates_by_mode
 from odometry.modes.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
 from odometry.windows.dense_noise import Noise
 from tests.odometry.modes.mode_drives import (
@@ -107,8 +107,8 @@ def test_what_gains_leave_open_is_as_large_as_their_errors():
     ratios = []
     for seed in range(6):
         run = drive(seed, "left", size=2000)
-        (scene,), heard = scenes_by_mode([run])[1]["left"], heard_by_mode([run])["left"]
-        fit = fitted([scene], heard, Noise(0.01, 0.005, 1e-4, 1e-5), YawRateNoise(0.02**2))
+        (scene,), measured = scenes_by_mode([run])[1]["left"], yaw_rates_by_mode([run])["left"]
+        fit = fitted([scene], measured, Noise(0.01, 0.005, 1e-4, 1e-5), YawRateNoise(0.02**2))
         squares = off(fit.gains, "left", run) ** 2
         treads = replace(scene.inputs, tread_speeds_m_s=run.odometry.stack("v_left", "v_right"))
         variances = fit.twist_variances(replace(scene, inputs=treads))
@@ -125,13 +125,15 @@ def test_a_gyroscope_gives_turns_better_than_poses_do():
         for name, sigma in (("x", 0.5), ("y", 0.5), ("yaw", 0.4))
     }
     run = replace(run, pose=replace(run.pose, columns=run.pose.columns | noisy))
-    heard = identify_traction_modes([run]).gains[0]
+    measured = identify_traction_modes([run]).gains[0]
     columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}
-    silent = replace(run, odometry=replace(run.odometry, columns=columns))
-    deaf = identify_traction_modes([silent]).gains[0]
-    of_heard, of_deaf = (np.sqrt((off(of, "left", run)[:, 2] ** 2).mean()) for of in (heard, deaf))
-    assert of_heard < 0.004
-    assert of_deaf > 0.03
+    poses_alone = replace(run, odometry=replace(run.odometry, columns=columns))
+    by_poses = identify_traction_modes([poses_alone]).gains[0]
+    with_gyroscope, without = (
+        np.sqrt((off(of, "left", run)[:, 2] ** 2).mean()) for of in (measured, by_poses)
+    )
+    assert with_gyroscope < 0.004
+    assert without > 0.03
 
 
 def test_errors_that_come_with_acceleration_are_found():

@@ -198,7 +198,7 @@ def test_motion_overrides_sight_that_is_wrong(run):
     seen = [SeenTerrain(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
     motion, both = (follow_modes(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
     assert (both[400:] > 0.5).mean() > 0.9
-    assert (both < motion).mean() > 0.95  # it is heard, though
+    assert (both < motion).mean() > 0.95  # the gyroscope counts, though
 
 
 def test_a_robot_that_stands_learns_from_the_camera_alone():

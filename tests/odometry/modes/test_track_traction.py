@@ -63,8 +63,8 @@ def test_a_bias_that_poses_confirm_is_no_reason_to_name_nothing(losing_traction)
     run, mode_set, _ = losing_traction
     truth = run.pose["yaw"]
     rates = np.gradient(np.unwrap(truth), run.pose.stamps_s)
-    heard = np.interp(run.odometry.stamps_s, run.pose.stamps_s, rates) + 6 * BIAS_SIGMA_RAD_S
-    odometry = table({**run.odometry.columns, "gyro_z": heard})
+    biased = np.interp(run.odometry.stamps_s, run.pose.stamps_s, rates) + 6 * BIAS_SIGMA_RAD_S
+    odometry = table({**run.odometry.columns, "gyro_z": biased})
     noise = mode_set.modes.measurement_variance * [1.0, 1.0, 1.0, 0.05**2]
     modes = replace(mode_set.modes, measurement_variance=noise)
     track = follow_modes(replace(run, odometry=odometry), replace(mode_set, modes=modes))

@@ -7,10 +7,10 @@ from odometry.modes.response import BLOCK_S
 from odometry.modes.yaw_rate_noise import (
     LASTING_S,
     NOT_MEASURED,
-    Heard,
     YawRateNoise,
+    YawRateStretch,
     estimated_yaw_rate_noise,
-    heard_of,
+    yaw_rate_stretch_of,
 )
 from tests.odometry.modes.mode_drives import ROBOT, asked_twists, gains_of, run_of_tables, wandering
 
@@ -21,9 +21,11 @@ GAINS = gains_of([[1.0, 0.0, 0.05], [0.0, 0.0, 0.5]], LEFT, RIGHT)
 
 
 def stretch(errors, accelerations=0.0):
-    """What was heard, of which only the step and the accelerations count, and errors."""
+    """What a gyroscope measured, of which only the step and the accelerations count, and errors."""
     blank, steady = np.zeros(len(errors)), np.broadcast_to(accelerations, errors.shape)
-    return Heard(blank, np.zeros((len(errors), 2)), blank, blank > 0, STEP_S, steady, 1.0), errors
+    return YawRateStretch(
+        blank, np.zeros((len(errors), 2)), blank, blank > 0, STEP_S, steady, 1.0
+    ), errors
 
 
 def drive(rng, size, errors, *, gyro=True):
@@ -40,7 +42,7 @@ def test_errors_are_what_the_gains_leave(rng):
     errors = rng.normal(size=3000)
     errors[7] = np.nan
     run = drive(rng, 3000, errors)
-    found = heard_of(run, np.arange(3000))
+    found = yaw_rate_stretch_of(run, np.arange(3000))
     np.testing.assert_allclose(found.errors(GAINS, 0.0), np.delete(errors, 7), atol=1e-9)
     assert found.step_s == pytest.approx(STEP_S)
     assert found.accelerations_m_s2.shape == (2999,)
@@ -51,15 +53,15 @@ def test_a_stationary_robot_has_no_error(rng):
     run = drive(rng, 300, np.arange(300.0))
     still = {name: run.odometry[name] * (np.arange(300) >= 100) for name in ("v_left", "v_right")}
     run = replace(run, odometry=replace(run.odometry, columns=run.odometry.columns | still))
-    assert len(heard_of(run, np.arange(300)).errors(GAINS, 0.0)) == 200
+    assert len(yaw_rate_stretch_of(run, np.arange(300)).errors(GAINS, 0.0)) == 200
     still = {name: np.zeros(300) for name in ("v_left", "v_right")}
     run = replace(run, odometry=replace(run.odometry, columns=run.odometry.columns | still))
-    assert heard_of(run, np.arange(300)) is None
+    assert yaw_rate_stretch_of(run, np.arange(300)) is None
 
 
 def test_a_gyroscope_read_less_often_than_the_treads(rng):
     errors = np.where(np.arange(3000) % 10 == 0, 0.1, np.nan)
-    found = heard_of(drive(rng, 3000, errors), np.arange(3000))
+    found = yaw_rate_stretch_of(drive(rng, 3000, errors), np.arange(3000))
     assert found.step_s == pytest.approx(10 * STEP_S)
     variance = estimated_yaw_rate_noise([(found, found.errors(GAINS, 0.0))]).variance
     assert variance == pytest.approx(0.1**2 * LASTING_S / (10 * STEP_S))
@@ -69,7 +71,7 @@ def test_stamps_may_be_those_of_a_clock(rng):
     run = drive(rng, 3000, 0.01 * rng.normal(size=3000))
     late = replace(run.odometry, columns=run.odometry.columns | {"t": run.odometry["t"] + 1.7e9})
     plain, clock = (
-        heard_of(of, np.arange(3000)).errors(GAINS, 0.1)
+        yaw_rate_stretch_of(of, np.arange(3000)).errors(GAINS, 0.1)
         for of in (run, replace(run, odometry=late))
     )
     np.testing.assert_allclose(clock, plain, atol=1e-4)
@@ -77,14 +79,14 @@ def test_stamps_may_be_those_of_a_clock(rng):
 
 def test_a_part_of_a_run_alone(rng):
     rows = np.arange(100, 400)
-    errors = heard_of(drive(rng, 500, np.arange(500.0)), rows).errors(GAINS, 0.0)
+    errors = yaw_rate_stretch_of(drive(rng, 500, np.arange(500.0)), rows).errors(GAINS, 0.0)
     np.testing.assert_allclose(errors[1:], rows[1:], atol=1e-9)
 
 
 def test_without_a_gyroscope_or_a_step_there_are_none(rng):
     run, without = (drive(rng, 100, 0.0, gyro=gyro) for gyro in (True, False))
-    assert heard_of(without, np.arange(100)) is None
-    assert heard_of(run, np.array([3])) is None
+    assert yaw_rate_stretch_of(without, np.arange(100)) is None
+    assert yaw_rate_stretch_of(run, np.array([3])) is None
     assert estimated_yaw_rate_noise([]) == YawRateNoise(NOT_MEASURED)
 
 

@@ -103,9 +103,9 @@ def test_the_gyroscope_of_imu_csv_is_preferred():
     """That of odometry.csv is silent here."""
     run, true_yaw = turning_run(3, 0.5, 0.0, bias_rad_s=0.0)
     imu = replace(run.odometry, columns={name: run.odometry[name] for name in ("t", "gyro_z")})
-    deaf = replace(gyroscope(0.0)(run), imu=imu)
-    np.testing.assert_array_equal(counted(deaf, true_yaw), counted(run, true_yaw))
-    assert counted(deaf, true_yaw)[1] == 0
+    without = replace(gyroscope(0.0)(run), imu=imu)
+    np.testing.assert_array_equal(counted(without, true_yaw), counted(run, true_yaw))
+    assert counted(without, true_yaw)[1] == 0
 
 
 def test_continuous_yaw_is_the_measured_one_but_for_whole_turns():
