@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.checks.findings.finding import CheckReport
 from odometry.run import Run
+from terrain.checks.fixed_parts import ROBOT_IN_IMAGES
 from terrain.errors import PatchError
 from terrain.run_options import RunOptions
 
@@ -43,8 +44,18 @@ def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]
     return replace(options, vision=False, source=source), said
 
 
+def outside_of_robot(run: Run, report: CheckReport, options: RunOptions) -> Run:
+    """A run whose [camera] leaves out the parts of its images that show the robot itself.
+
+    A published system (a preset) is what it is.
+    """
+    if options.preset is not None:
+        return run
+    return _with_outlines(run, report)
+
+
 def run_to_label(run: Run, report: CheckReport) -> Run:
-    """A run without the images of a frozen or covered camera, which do not show what is ahead.
+    """A run without the images, and parts of them, that do not show the terrain ahead.
 
     Raises
     ------
@@ -67,4 +78,12 @@ def run_to_label(run: Run, report: CheckReport) -> Run:
         raise PatchError(
             f"{run.folder}: no image is left: the camera was frozen or covered all the time"
         )
-    return replace(run, images=run.images.rows(np.flatnonzero(kept)))
+    kept_images = run.images.rows(np.flatnonzero(kept))
+    return _with_outlines(replace(run, images=kept_images), report)
+
+
+def _with_outlines(run: Run, report: CheckReport) -> Run:
+    mends = [finding.mend for finding in report.findings if finding.name == ROBOT_IN_IMAGES]
+    for mend in mends:
+        run = mend(run) if mend is not None else run
+    return run

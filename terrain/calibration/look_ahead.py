@@ -84,7 +84,7 @@ def metre_px(camera: Camera, place_m: FloatArray) -> tuple[float, float]:
 def nearest_seen_m(camera: Camera) -> float | None:
     """X of the nearest terrain straight ahead that the image shows, None where it shows none."""
     x = np.arange(0.0, FARTHEST_M, STEP_M)
-    seen = camera.in_image(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
+    seen = camera.shows_terrain(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
     return float(x[seen.argmax()]) if seen.any() else None
 
 

@@ -1,11 +1,10 @@
 """The camera: ground plane to image pixels and back, from any calibration."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,6 +19,7 @@ from terrain.camera.camera_values import (
     size_in_pixels,
 )
 from terrain.camera.distortion import distort, undistort
+from terrain.camera.robot_outlines import checked_outlines, covered
 from terrain.errors import CameraError
 
 
@@ -44,6 +44,8 @@ class Camera:
         third component is positive in front of the camera.
     mount : (6,) array or None
         x, y, z [m], roll, pitch, yaw [rad] of the camera in the robot frame, if known.
+    robot_outlines : tuple of (n, 2) arrays
+        Polygons in raw pixels of parts of the image that show the robot itself.
 
     Examples
     --------
@@ -61,6 +63,7 @@ class Camera:
     distortion: FloatArray
     ground_to_image: FloatArray
     mount: FloatArray | None = None
+    robot_outlines: tuple[FloatArray, ...] = ()
 
     @classmethod
     def from_mount(
@@ -132,14 +135,16 @@ class Camera:
         ------
         CameraError
             If a key is missing or wrong, or not exactly one of `mount` and `ground_to_image` is
-            there; the message names `where`.
+            there; the message names `where`. `robot_outlines` may be missing.
         """
         if not isinstance(table, Mapping):
             raise CameraError(f"{where}: camera = {table!r}, expected a table [camera]")
         try:
             pose = pose_key(table)
             make = cls.from_mount if pose == "mount" else cls.from_homography
-            return make(table["image_size"], table["matrix"], table["distortion"], table[pose])
+            camera = make(table["image_size"], table["matrix"], table["distortion"], table[pose])
+            outlines = checked_outlines(table.get("robot_outlines", ()), camera.image_size)
+            return replace(camera, robot_outlines=outlines)
         except CameraError as error:
             raise CameraError(f"{where}: [camera] {error}") from error
 
@@ -150,6 +155,8 @@ class Camera:
             "matrix": self.matrix.tolist(),
             "distortion": self.distortion.tolist(),
         }
+        if self.robot_outlines:
+            table["robot_outlines"] = [outline.tolist() for outline in self.robot_outlines]
         if self.mount is None:
             return table | {"ground_to_image": self.ground_to_image.tolist()}
         return table | {"mount": self.mount.tolist()}
@@ -217,32 +224,25 @@ class Camera:
         width, height = self.image_size
         return np.asarray((u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1))
 
+    def shows_terrain(self, pixels: ArrayLike) -> BoolArray:
+        """Whether pixels (..., 2) lie in the image, outside of `robot_outlines`, as booleans."""
+        inside = self.in_image(pixels)
+        if not self.robot_outlines:
+            return inside
+        at = np.where(inside[..., None], np.asarray(pixels, dtype=np.float64), 0.0)
+        u, v = np.moveaxis(np.rint(at).astype(np.int64), -1, 0)
+        return np.asarray(inside & ~self._robot[v, u])
+
+    @cached_property
+    def _robot(self) -> BoolArray:
+        return covered(self.robot_outlines, self.image_size)
+
     def check_size(self, image: AnyArray) -> None:
         """Raise CameraError unless the image (H, W, ...) is of the camera's size."""
         height, width = image.shape[:2]
         if (width, height) != self.image_size:
             seen, expected = f"{width}x{height}", "{}x{}".format(*self.image_size)
             raise CameraError(f"the image is {seen} pixels, the camera's are {expected}")
-
-    def undistort(self, image: AnyArray) -> AnyArray:
-        """Image (H, W) or (H, W, 3) of a lens without distortion and with the same `matrix`.
-
-        Raises
-        ------
-        CameraError
-            If the image is not of the camera's size.
-        """
-        self.check_size(image)
-        if not self.distortion.any():
-            return image.copy()
-        return np.asarray(cv2.remap(image, *self._undistortion_maps, cv2.INTER_LINEAR))
-
-    @cached_property
-    def _undistortion_maps(self) -> tuple[AnyArray, AnyArray]:
-        maps: tuple[AnyArray, AnyArray] = cv2.initUndistortRectifyMap(
-            self.matrix, self.distortion, np.eye(3), self.matrix, self.image_size, cv2.CV_16SC2
-        )
-        return maps
 
 
 def _apply(matrix: FloatArray, points: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera.camera import Camera
+from terrain.checks.fixed_parts import fixed_parts, robot_in_images
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps
 from terrain.checks.image_agreement import LARGEST_LAG_S, ImageMotion
 from terrain.checks.image_stretches import image_stretches
@@ -38,7 +39,8 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     """Images that are late, early, reversed or mirrored, and a camera that points elsewhere.
 
     Stretches on which the image stays or has no texture are findings, and are not compared; those
-    on which details are lost are findings, too.
+    on which details are lost are findings, too, and parts of the image that show the robot itself,
+    whose features are not compared either.
 
     Returns
     -------
@@ -50,6 +52,10 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     stretches = image_stretches(run, camera, views)
     poor = list(stretches.findings())
     run = stretches.others()
+    parts = fixed_parts(run, camera, views)
+    poor += robot_in_images(parts)
+    if parts is not None:
+        camera = replace(camera, robot_outlines=(*camera.robot_outlines, *parts.outlines))
     poor += lost_details(run, camera, views)
     steps = ground_steps(run, camera, views)
     motion = ImageMotion(run, steps) if len(steps) >= FEWEST_PAIRS else None

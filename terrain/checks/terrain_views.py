@@ -105,6 +105,7 @@ class TerrainViews:
         pixels = np.array(self.size) - 1.0 - found[0] if self.turned else found[0]
         places = camera.pixels_to_ground(pixels)
         near = np.linalg.norm(places, axis=1) < FARTHEST * camera.height_m
+        near &= camera.shows_terrain(pixels)
         return pixels[near], found[1][near]
 
     def _looked_at(self, image: AnyArray) -> "_Seen":

@@ -138,7 +138,7 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     Example:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
-    from terrain.believed_images import believed
+    from terrain.believed_images import believed, outside_of_robot
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import (
@@ -158,6 +158,7 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     options, left_out = believed(options, checks_made()[-1])
     if left_out:
         click.echo(f"Warning: {run_folder}: {left_out}", err=True)
+    recording = outside_of_robot(recording, checks_made()[-1], options)
     result = options.replay(recording, show_progress=True)
     if options.wants_images and result.watcher is None and recording.images is not None:
         click.echo("Note: the run has images, but there is no vision without --model", err=True)

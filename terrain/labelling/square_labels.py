@@ -77,7 +77,7 @@ def _names(finder: SquareFinder, given: GivenTerrain, square: DrivenSquare) -> f
     first, end = finder.rows_before(square)
     robot = se2.inverse(finder.poses[first:end])
     from_robot = se2.transform(robot, np.array(square.middle_m))
-    shows = finder.camera.in_image(finder.camera.ground_to_pixels(from_robot))
+    shows = finder.camera.shows_terrain(finder.camera.ground_to_pixels(from_robot))
     names = {given.names[first + int(image)] for image in np.flatnonzero(shows)}
     return frozenset(names - {""} or {""})
 

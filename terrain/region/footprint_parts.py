@@ -151,12 +151,12 @@ def is_visible(camera: Camera, points: FloatArray, coarsest_m: float = inf) -> B
     (...) booleans
     """
     if coarsest_m == inf:
-        return camera.in_image(camera.ground_to_pixels(points))
+        return camera.shows_terrain(camera.ground_to_pixels(points))
     places = np.asarray(points).reshape(-1, 2)
     at, *aside = camera.ground_to_pixels(places + ASIDE)
     by_x, by_y = ((there - at) / STEP_M for there in aside)
     fine = _smallest_stretch(by_x, by_y) * coarsest_m >= 1
-    return (camera.in_image(at) & fine).reshape(np.shape(points)[:-1])
+    return (camera.shows_terrain(at) & fine).reshape(np.shape(points)[:-1])
 
 
 def largest_visible(camera: Camera, rectangle: Rectangle, coarsest_m: float = inf) -> Rectangle:

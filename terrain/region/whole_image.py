@@ -101,7 +101,7 @@ def _row(camera: Camera, x: float, size_m: float) -> list[Rectangle]:
     """As many squares as fit into the image between x and x + size_m, in its middle."""
     y = np.linspace(MOST_AHEAD_M, -MOST_AHEAD_M, 801)
     across = np.stack(np.meshgrid(np.linspace(x, x + size_m, 5), y), axis=-1)
-    seen = y[camera.in_image(camera.ground_to_pixels(across)).all(axis=1)]
+    seen = y[camera.shows_terrain(camera.ground_to_pixels(across)).all(axis=1)]
     if not len(seen):
         return []
     count = int((seen[0] - seen[-1]) / size_m + 1e-9)
@@ -110,11 +110,11 @@ def _row(camera: Camera, x: float, size_m: float) -> list[Rectangle]:
 
 
 def _is_visible(camera: Camera, cell: Rectangle) -> bool:
-    return bool(camera.in_image(camera.ground_to_pixels(outline(cell))).all())
+    return bool(camera.shows_terrain(camera.ground_to_pixels(outline(cell))).all())
 
 
 def _nearest_ahead_m(camera: Camera) -> float | None:
     """The nearest terrain straight ahead of the robot that the image shows."""
     x = np.linspace(0.0, MOST_AHEAD_M, 401)
-    seen: BoolArray = camera.in_image(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
+    seen: BoolArray = camera.shows_terrain(camera.ground_to_pixels(np.stack([x, 0 * x], axis=-1)))
     return float(x[seen.argmax()]) if seen.any() else None

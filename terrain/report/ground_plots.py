@@ -23,8 +23,8 @@ from terrain.region.whole_image import outline
 from terrain.report.plots import draw_outline, plot_image
 
 GRID = "#FFFFFF"
-FOOTPRINT, REGION = "footprint", "region ahead"
-_OUTLINES = {FOOTPRINT: "#99DDFF", REGION: "#EEDD88"}  # bright, with dark edges
+FOOTPRINT, REGION, ROBOT = "footprint", "region ahead", "robot_outlines"
+_OUTLINES = {FOOTPRINT: "#99DDFF", REGION: "#EEDD88", ROBOT: "#FFAABB"}  # bright, with dark edges
 NEAR_M = 4.0  # a region as near as this gets a grid of half metres
 BEHIND_M, ASIDE_M, BEYOND_M = 1.0, 3.0, 2.0  # of the robot's middle, and beyond the region
 FINE_M = 0.02
@@ -137,6 +137,8 @@ def plot_ground(axes: Axes, robot: Robot, shown: ShownImage) -> None:
     height, width = shown.image.shape[:2]
     step_m = draw_ground_grid(axes, shown.camera, shown.region)
     draw_footprint(axes, shown.camera, robot)
+    for robot_outline in shown.camera.robot_outlines:
+        draw_outline(axes, robot_outline, _OUTLINES[ROBOT], ROBOT)
     if shown.region is not None:
         draw_region_ahead(axes, shown.camera, shown.region)
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))

@@ -79,7 +79,7 @@ def regions_picture(
 
     def draw(figure: Figure) -> None:
         for axes, image_label in zip(figure.subplots(rows, 2).flat, chosen, strict=False):
-            _draw_sighting(axes, result, camera, image_label, tints)
+            _draw_image_label(axes, result, camera, image_label, tints)
         for axes in figure.axes[len(chosen) :]:
             axes.remove()
         figure.subplots_adjust(0.01, 0.01, 0.99, 1 - 0.1 / rows, wspace=0.03, hspace=0.13)
@@ -116,7 +116,7 @@ def whole_image_picture(
             at_s = image_label.stamp_s - result.run.began_s
             plot_image(left, image, f"{at_s:.2f} s: all visible terrain")
             draw_cells(left, camera, classify_ground(image, camera, classifier), tints)
-            _draw_sighting(right, result, camera, image_label, tints)
+            _draw_image_label(right, result, camera, image_label, tints)
         figure.subplots_adjust(0.01, 0.01, 0.99, 1 - 0.1 / rows, wspace=0.03, hspace=0.13)
 
     size_in = _grid_size(camera, rows)
@@ -133,7 +133,7 @@ def camera_of(result: RunResult) -> Camera:
     return Camera.from_table(result.run.settings["camera"], str(result.run.folder / "run.toml"))
 
 
-def _draw_sighting(
+def _draw_image_label(
     axes: Axes, result: RunResult, camera: Camera, image_label: ImageLabel, tints: Tints
 ) -> None:
     ahead = f"{image_label.region.distance_ahead_m:.1f} m ahead" if image_label.region else ""

@@ -1,6 +1,7 @@
 """Images with their regions and labels, each figure drawn on given axes."""
 
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,15 +16,20 @@ from terrain.image_labels.image_label import ImageLabel
 from terrain.region.whole_image import Cell, outline
 
 NO_LABEL = "no label"
+_TITLE_LETTERS = 50  # of a line above an image in two columns
 _SHORTEST_NAMED = 0.05  # of the time axis: the name would not fit
 _HALO = (withStroke(linewidth=3.0, foreground="black"),)
 
 
 def plot_image(axes: Axes, image: ByteImage, title: str) -> None:
-    """Draw an image (H, W, 3) or (H, W) with no frame, pixel (0, 0) centred at the origin."""
+    """Draw an image (H, W, 3) or (H, W) with no frame, pixel (0, 0) centred at the origin.
+
+    A long title is set in smaller lines, so that it stays above its image.
+    """
     axes.imshow(image, cmap="gray", vmin=0, vmax=255, interpolation="antialiased")
     axes.set_axis_off()
-    axes.set_title(title, fontsize=9.5, parse_math=False)
+    lines = fill(title, _TITLE_LETTERS)
+    axes.set_title(lines, fontsize=8.0 if "\n" in lines else 9.5, parse_math=False)
 
 
 def draw_region(

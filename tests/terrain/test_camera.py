@@ -199,7 +199,8 @@ def test_undistorted_pixels_share_the_matrix():
     image = np.zeros((480, 640), np.uint8)
     u, v = camera.ground_to_pixels([1.6, 0.45])
     cv2.circle(image, (round(u), round(v)), 3, 255, -1)
-    rows, columns = np.nonzero(camera.undistort(image) > 100)
+    undistorted = cv2.undistort(image, camera.matrix, camera.distortion)
+    rows, columns = np.nonzero(undistorted > 100)
     x, y, w = camera.ground_to_image @ [1.6, 0.45, 1.0]
     np.testing.assert_allclose([columns.mean(), rows.mean()], [x / w, y / w], atol=0.8)
     assert np.hypot(u - x / w, v - y / w) > 5
@@ -210,12 +211,40 @@ def test_image_borders():
     np.testing.assert_array_equal(inside, [True, True, False, False, False])
 
 
-def test_undistort_rejects_an_image_of_another_size():
+def test_an_image_of_another_size_is_refused():
     with pytest.raises(CameraError, match="480x640 pixels, the camera's are 640x480"):
-        mounted().undistort(np.zeros((640, 480), np.uint8))
+        mounted().check_size(np.zeros((640, 480), np.uint8))
 
 
 TABLE = mounted().to_table()
+BUMPER = [[0, 400], [639, 400], [639, 479], [0, 479]]
+
+
+def test_the_image_shows_no_terrain_where_it_shows_the_robot():
+    camera = Camera.from_table(TABLE | {"robot_outlines": [BUMPER, [[10, 10], [30, 10], [10, 30]]]})
+    shown = {(320, 390): True, (320, 400): False, (0, 479): False, (14, 14): False, (28, 28): True}
+    pixels = np.array([*shown, (np.nan, 420), (320, 480)])
+    np.testing.assert_array_equal(camera.in_image(pixels), [True] * 5 + [False] * 2)
+    np.testing.assert_array_equal(camera.shows_terrain(pixels), [*shown.values(), False, False])
+    assert camera.shows_terrain([320.0, 390.4])
+    again = Camera.from_table(camera.to_table())
+    np.testing.assert_array_equal(again.robot_outlines[0], BUMPER)
+    assert "robot_outlines" not in TABLE
+
+
+@pytest.mark.parametrize(
+    ("outlines", "said"),
+    [
+        ("all", "robot_outlines = 'all', expected polygons"),
+        ([[[0, 0], [10, 0]]], "robot_outlines\\[0\\] = .*, expected at least 3 pixels"),
+        ([BUMPER, [0, 0, 5]], "robot_outlines\\[1\\] has shape|robot_outlines\\[1\\] must hold"),
+        ([[[0, 0], [700, 0], [0, 20]]], "corner \\[700.0, 0.0\\], .* of 640x480 pixels"),
+        ([[[0, 0], [float("nan"), 0], [0, 20]]], "not finite"),
+    ],
+)
+def test_outlines_that_are_none_are_refused(outlines, said):
+    with pytest.raises(CameraError, match=said):
+        Camera.from_table(TABLE | {"robot_outlines": outlines})
 
 
 @pytest.mark.parametrize(

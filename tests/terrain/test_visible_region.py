@@ -1,5 +1,7 @@
 """How far ahead the region lies, and which part of it the image shows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -49,6 +51,30 @@ def test_default_time_is_the_smallest_for_which_all_of_the_footprint_is_in_sight
         assert isinstance(region, Region)
         assert found_m[0] - 0.0051 <= region.ahead_s * speed <= found_m[0] + 3.6 / 199
         assert region.distance_ahead_m == pytest.approx(region.ahead_s * speed)
+
+
+@settings(max_examples=25)
+@given(
+    speed=st.floats(0.1, 2.0),
+    curvature=st.floats(-1.0, 1.0),
+    pitch=st.floats(0.5, 1.2),
+    rows=st.integers(200, 479),
+)
+def test_a_bumper_over_the_lowest_rows_is_as_an_image_that_ends_there(
+    speed, curvature, pitch, rows
+):
+    mount = [0.3, 0.0, 0.9, 0.0, pitch, 0.0]
+    whole, shorter = (Camera.from_mount((640, h), MATRIX, [], mount) for h in (480, rows))
+    bumper = np.array([[0, rows], [639, rows], [639, 479], [0, 479]], float)
+    twist = np.array([speed, 0.0, speed * curvature])
+    beside, above = (
+        predict_region(ROBOT, camera, twist, speed, RegionConfig())
+        for camera in (replace(whole, robot_outlines=(bumper,)), shorter)
+    )
+    assert type(beside) is type(above)
+    if isinstance(above, Region):
+        # pixels are looked up in the nearest one: half a pixel of terrain, a cell at the most
+        assert beside.ahead_s == pytest.approx(above.ahead_s, abs=2 * 3.6 / 199 / speed)
 
 
 @settings(max_examples=40)

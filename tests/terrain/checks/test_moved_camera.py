@@ -31,7 +31,8 @@ def moved(tmp_path_factory):
         turn, _ = cv2.Rodrigues(np.array([-np.radians(TURN_DEG), 0.0, 0.0]))
         turn = camera.matrix @ turn @ np.linalg.inv(camera.matrix)
         for name in run.images["file"][chosen(run.images.stamps_s)]:
-            image = camera.undistort(cv2.imread(str(folder / str(name))))
+            image = cv2.imread(str(folder / str(name)))
+            image = cv2.undistort(image, camera.matrix, camera.distortion)
             turned = cv2.warpPerspective(image, turn, camera.image_size)
             cv2.imwrite(str(folder / str(name)), turned)
         return run, camera

@@ -141,3 +141,13 @@ def test_a_column_of_the_confusion_is_a_true_terrain(axes):
     assert [label.get_text() for label in axes.get_xticklabels()] == ["$ice^$", "b"]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("true terrain", "label")
     axes.figure.canvas.draw()
+
+
+def test_a_long_title_stays_above_its_image():
+    axes = Figure(figsize=(9, 3)).subplots(1, 2)[0]
+    reason = "unlike the training photographs, and not right with a probability of 0.7 or more"
+    plot_image(axes, np.zeros((120, 160), np.uint8), f"8.75 s: {reason}")
+    axes.figure.draw_without_rendering()
+    image, title = axes.get_window_extent(), axes.title.get_window_extent()
+    assert title.width < 1.1 * image.width
+    assert axes.get_title().replace("\n", " ") == f"8.75 s: {reason}"
