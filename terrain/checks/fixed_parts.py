@@ -21,7 +21,8 @@ FINEST_PX, COARSEST_PX = 1.0, 4.0  # sizes of the details of a tile
 # Mean correlation of a tile in pairs of images: terrain has 0.2 at most, a part of the robot 0.7
 FIXED = 0.5
 LEAST_GREY = 1.0  # of details: a tile with less shows noise, or blocks of JPEG
-JUMP = 4.0  # of details, from a smooth part of the robot to the terrain round it
+# Of the tiles round a smooth part, in the mean: half of them may be terrain, which has 0.0
+BORDER, LEAST_BORDER = 0.05, 8
 LEAST_TILES, LEAST_FIXED = 4, 2  # of a part
 MOST_SHARE = 0.5  # of the terrain: more is no robot, but a camera that is frozen or covered
 SIMPLIFIED_PX = 2.0  # by which an outline may be off, of images of `TerrainViews`
@@ -55,14 +56,14 @@ def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | N
     if len(details) < FEWEST:
         return None
     shape = tuple(length // TILE_PX for length in details.shape[1:])
-    near = _near_terrain(camera, details.shape[1:]).reshape(shape)
+    near = _near_terrain(camera, details.shape[1:])
     of_tiles = np.stack([tiles(one, TILE_PX) for one in details])
     sizes = np.sqrt((of_tiles**2).mean(axis=2))
-    fixed = (_alike(of_tiles) > FIXED) & (np.median(sizes, axis=0) > LEAST_GREY)
+    alike = _alike(of_tiles)
+    fixed = (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_GREY)
     smooth = np.quantile(sizes, 0.9, axis=0) < LEAST_GREY
-    usual = np.median(sizes, axis=0).reshape(shape)
-    found = _parts(fixed.reshape(shape) & near, smooth.reshape(shape) & near, usual)
-    share = float(found[near].mean()) if near.any() else 0.0
+    found = _parts(*(of.reshape(shape) for of in (fixed & near, smooth & near, alike)))
+    share = float(found.ravel()[near].mean()) if near.any() else 0.0
     if not 0 < share < MOST_SHARE:
         return None
     return FixedParts(tuple(_outlines(found, camera.image_size)), share, len(details))
@@ -127,20 +128,20 @@ def _alike(of_tiles: AnyArray) -> FloatArray:
     return np.asarray((count * (units.mean(axis=0) ** 2).sum(axis=1) - 1) / (count - 1))
 
 
-def _parts(fixed: BoolArray, smooth: BoolArray, usual: FloatArray) -> BoolArray:
+def _parts(fixed: BoolArray, smooth: BoolArray, alike: FloatArray) -> BoolArray:
     """Tiles (rows, columns) of the parts, with those beside them.
 
-    A part has fixed tiles, and smooth ones between and beside them; or it is all smooth, and the
-    details jump at its border: smooth terrain has more of them the farther away it is.
+    A part has fixed tiles, and smooth ones between and beside them; or it is all smooth, and its
+    border stays: that of smooth terrain moves.
     """
     around = np.ones((3, 3), np.uint8)
     found = np.zeros(fixed.shape, dtype=np.bool_)
     count, labels = cv2.connectedComponents((fixed | smooth).astype(np.uint8), connectivity=8)
     for label in range(1, count):
         part = (labels == label).astype(np.uint8)
-        border = (cv2.dilate(part, around, iterations=2) - cv2.dilate(part, around)) > 0
+        border = (cv2.dilate(part, around) - part) > 0
         is_robot = np.count_nonzero(fixed & (part > 0)) >= LEAST_FIXED or (
-            border.any() and np.quantile(usual[border], 0.1) > JUMP * LEAST_GREY
+            np.count_nonzero(border) >= LEAST_BORDER and alike[border].mean() > BORDER
         )
         if is_robot and part.sum() >= LEAST_TILES:
             found |= cv2.dilate(part, around) > 0
