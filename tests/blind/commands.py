@@ -112,8 +112,14 @@ def _kept(speed, difference, limits):
 def _slewed(treads):
     """The same, no tread faster in its change than the acceleration, from rest."""
     most = ACCELERATION_M_S2 / RATE_HZ
-    result = np.zeros_like(treads)
-    for row in range(1, len(treads)):
-        change = np.clip(treads[row] - result[row - 1], -most, most)
-        result[row] = result[row - 1] + change
-    return result
+    changed = np.column_stack([followed(side, most, 0.0) for side in treads[1:].T])
+    return np.vstack([np.zeros(2), changed])
+
+
+def followed(wanted, most, start):
+    """Values (N,) that go from a start towards those wanted (N,), by at most so much a row."""
+    rows, at = [], float(start)
+    for value in wanted.tolist():
+        at += min(max(value - at, -most), most)
+        rows.append(at)
+    return np.array(rows)

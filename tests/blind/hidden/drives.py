@@ -6,6 +6,7 @@ The recorded speeds are those that were asked for.
 
 import numpy as np
 
+from tests.blind.commands import followed
 from tests.blind.hidden.courses import bursts, delayed, lagged, moment, rates_of, sign, wander
 from tests.blind.hidden.kind import Hidden, Kind
 
@@ -30,12 +31,7 @@ def acceleration_limit(rng, scene):
         step = most * clock.step_s
 
         def treads(asked):
-            result = np.empty_like(asked)
-            state = asked[0]
-            for row, wanted in enumerate(asked):
-                state = state + np.clip(wanted - state, -step, step)
-                result[row] = state
-            return result
+            return np.column_stack([followed(side, step, side[0]) for side in asked.T])
 
         return Hidden({"most_m_s2": most}, treads=treads)
 

@@ -81,20 +81,20 @@ def _on_the_level(twist, drive, _):
 
 def _by_place(twist, drive, at_place):
     """Poses by the midpoint rule; the twist and the attitude follow the place."""
-    poses, yaw_rates = np.empty((len(twist), 5)), np.empty(len(twist))
+    rows, half_s = [], STEP_S / 2
     x, y, yaw = drive.start
     for row, base in enumerate(twist.tolist()):
-        rate, attitude, omega = _rates((x, y, yaw), row, base, drive.ground, at_place)
-        poses[row], yaw_rates[row] = (x, y, *attitude, yaw), omega
-        middle = [at + STEP_S / 2 * r for at, r in zip((x, y, yaw), rate, strict=True)]
-        rate = _rates(middle, row, base, drive.ground, at_place)[0]
-        x, y, yaw = (at + STEP_S * r for at, r in zip((x, y, yaw), rate, strict=True))
-    return poses, yaw_rates
+        rates, roll, pitch, omega = _rates(x, y, yaw, row, base, drive.ground, at_place)
+        rows.append((x, y, roll, pitch, yaw, omega))
+        middle = x + half_s * rates[0], y + half_s * rates[1], yaw + half_s * rates[2]
+        rates = _rates(*middle, row, base, drive.ground, at_place)[0]
+        x, y, yaw = x + STEP_S * rates[0], y + STEP_S * rates[1], yaw + STEP_S * rates[2]
+    table = np.array(rows)
+    return table[:, :5], table[:, 5]
 
 
-def _rates(pose, row, twist, ground, at_place):
-    """Rates of x, y and yaw, the attitude (roll, pitch), and the rate about the body's z."""
-    x, y, yaw = pose
+def _rates(x, y, yaw, row, twist, ground, at_place):
+    """Rates of x, y and yaw, roll, pitch, and the rate about the body's z."""
     g_x, g_y, g_xx, g_xy, g_yy = ground.slopes(x, y)
     roll, pitch = attitude_on(g_x, g_y, yaw)
     if at_place is not None:
@@ -107,4 +107,4 @@ def _rates(pose, row, twist, ground, at_place):
     # The slope ahead changes by the bend of the ground; the body pitches with it about its y.
     bend = (g_xx * x_rate + g_xy * y_rate) * cos + (g_xy * x_rate + g_yy * y_rate) * sin
     nose_down = -bend * cos_p**2 * cos_r
-    return (x_rate, y_rate, (sin_r * nose_down + cos_r * omega) / cos_p), (roll, pitch), omega
+    return (x_rate, y_rate, (sin_r * nose_down + cos_r * omega) / cos_p), roll, pitch, omega

@@ -6,6 +6,7 @@ import math
 import numpy as np
 from scipy.signal import lfilter
 
+from tests.blind.commands import followed
 from tests.blind.hidden.courses import bursts, delayed, lagged
 from tests.blind.hidden.kind import Hidden, Kind
 
@@ -153,14 +154,11 @@ def gentle_side(rng, scene):
     side, most_m_s2 = side_of(rng), rng.uniform(0.15, 0.4)
 
     def hide(rng, clock):
-        step = np.where(side, most_m_s2, np.inf) * clock.step_s
+        steps = np.where(side, most_m_s2, np.inf) * clock.step_s
 
         def treads(asked):
-            result, state = np.empty_like(asked), asked[0]
-            for row, wanted in enumerate(asked):
-                state = state + np.clip(wanted - state, -step, step)
-                result[row] = state
-            return result
+            sides = zip(asked.T, steps.tolist(), strict=True)
+            return np.column_stack([followed(one, step, one[0]) for one, step in sides])
 
         return Hidden({"most_m_s2": most_m_s2}, treads=treads)
 

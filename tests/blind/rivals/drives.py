@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.blind.commands import ACCELERATION_M_S2, RATE_HZ
+from tests.blind.commands import ACCELERATION_M_S2, RATE_HZ, followed
 from tests.blind.ground import Ground
 from tests.blind.hidden.scene import STEP_S, Drive
 
@@ -114,8 +114,4 @@ def waves(proposal):
 
 def _from_rest(wanted):
     most = ACCELERATION_M_S2 * STEP_S
-    result, state = np.empty_like(wanted), np.zeros(2)
-    for row, speeds in enumerate(wanted):
-        state = state + np.clip(speeds - state, -most, most)
-        result[row] = state
-    return result
+    return np.column_stack([followed(side, most, 0.0) for side in wanted.T])
