@@ -54,18 +54,13 @@ def drive(seed, effect=None, *, duration_s=160.0, top_m_s=1.0, name="run", terra
 
 def integrated(twist):
     """Poses before each step along exact arcs; the hills are too gentle to matter."""
-    poses = np.zeros((len(twist), 3))
-    for i, (forward, aside, omega) in enumerate(twist[:-1]):
-        x, y, yaw = poses[i]
-        half = omega * PERIOD_S / 2
-        chord = np.sinc(half / np.pi) * PERIOD_S
-        c, s = np.cos(yaw + half), np.sin(yaw + half)
-        poses[i + 1] = (
-            x + chord * (c * forward - s * aside),
-            y + chord * (s * forward + c * aside),
-            yaw + 2 * half,
-        )
-    return poses
+    forward, aside, omega = twist[:-1].T
+    half = omega * PERIOD_S / 2
+    yaw = np.concatenate([[0.0], np.cumsum(2 * half)])
+    chord = np.sinc(half / np.pi) * PERIOD_S
+    c, s = np.cos(yaw[:-1] + half), np.sin(yaw[:-1] + half)
+    steps = chord * np.array([c * forward - s * aside, s * forward + c * aside])
+    return np.column_stack([*np.pad(np.cumsum(steps, axis=1), ((0, 0), (1, 0))), yaw])
 
 
 def table(columns):

@@ -67,17 +67,13 @@ def path_of(left, right):
     omega = (right - left) / width
     forward = (right * ICR["y_left"] - left * ICR["y_right"]) / width
     aside = -ICR["x_icr"] * omega
-    poses = np.zeros((len(omega), 3))
-    for i in range(len(omega) - 1):
-        yaw, half = poses[i, 2], omega[i] * PERIOD_S / 2
-        chord = np.sinc(half / np.pi) * PERIOD_S
-        c, s = np.cos(yaw + half), np.sin(yaw + half)
-        poses[i + 1] = (
-            poses[i, 0] + chord * (c * forward[i] - s * aside[i]),
-            poses[i, 1] + chord * (s * forward[i] + c * aside[i]),
-            yaw + 2 * half,
-        )
-    return poses, omega
+    half = omega * PERIOD_S / 2
+    yaw = np.concatenate([[0.0], np.cumsum(2 * half[:-1])])
+    chord = np.sinc(half / np.pi) * PERIOD_S
+    c, s = np.cos(yaw + half), np.sin(yaw + half)
+    steps = chord * np.array([c * forward - s * aside, s * forward + c * aside])
+    places = np.pad(np.cumsum(steps[:, :-1], axis=1), ((0, 0), (1, 0)))
+    return np.column_stack([*places, yaw]), omega
 
 
 def emptied(run, *, turned_rad=0.0, moved_m=(0.0, 0.0)):

@@ -8,6 +8,7 @@ from odometry.run import Robot, Run
 from odometry.table import Table
 
 ROBOT = Robot(track_width=0.5, length=0.8)
+PIECES = 4  # of a step, in which equations are integrated
 
 
 def integrated(rates, state, lasts_s, pieces):
@@ -34,40 +35,54 @@ def velocities(A, B, treads, step_s, start=(0.5, 0.0)):
     """Speed and yaw rate (N, 2) of A and B (N, 2, 2), each in force to the next stamp."""
     states = [np.array(start)]
     for a, b, u in zip(A[:-1], B[:-1], treads[:-1], strict=True):
-        states.append(integrated(lambda q, a=a, b=b, u=u: a @ q + b @ u, states[-1], step_s, 4))
+        states.append(integrated(lambda q, a=a, b=b, u=u: a @ q + b @ u, states[-1], step_s, PIECES))
     return np.array(states)
 
 
 def poses_and_yaw_rates(asked, lag_s, step_s):
-    """x, y, yaw and yaw rate (N, 4) of twists (N, 3); the turn, at first as asked, follows late."""
+    """x, y, yaw and yaw rate (N, 4) of twists (N, 3); the turn, at first as asked, follows late.
 
-    def rates(state, twist):
-        _, _, yaw, omega = state
-        c, s = np.cos(yaw), np.sin(yaw)
-        ahead, aside = c * twist[0] - s * twist[1], s * twist[0] + c * twist[1]
-        return np.array([ahead, aside, omega, (twist[2] - omega) / lag_s])
-
-    states = [np.array([0.0, 0.0, 0.0, asked[0, 2]])]
-    for twist in asked[:-1]:
-        states.append(integrated(lambda q, w=twist: rates(q, w), states[-1], step_s, 4))
-    return np.array(states)
+    As `integrated`: the place does not count for how fast it changes, and is summed up after all.
+    """
+    h = step_s / PIECES
+    turns, stages = [(0.0, float(asked[0, 2]))], []
+    for turn in asked[:-1, 2].tolist():
+        yaw, omega = turns[-1]
+        for _ in range(PIECES):
+            first = (turn - omega) / lag_s
+            at_second = omega + h / 2 * first
+            second = (turn - at_second) / lag_s
+            at_third = omega + h / 2 * second
+            third = (turn - at_third) / lag_s
+            at_fourth = omega + h * third
+            fourth = (turn - at_fourth) / lag_s
+            stages.append((yaw, yaw + h / 2 * omega, yaw + h / 2 * at_second, yaw + h * at_third))
+            yaw += h / 6 * (omega + 2 * at_second + 2 * at_third + at_fourth)
+            omega += h / 6 * (first + 2 * second + 2 * third + fourth)
+        turns.append((yaw, omega))
+    ahead, aside = np.repeat(asked[:-1, :2], PIECES, axis=0).T[..., None]
+    c, s = np.cos(stages), np.sin(stages)
+    moves = [
+        h / 6 * (first + 2 * second + 2 * third + fourth)
+        for first, second, third, fourth in ((c * ahead - s * aside).T, (s * ahead + c * aside).T)
+    ]
+    places = [np.concatenate([[0.0], np.cumsum(move)])[::PIECES] for move in moves]
+    return np.column_stack([*places, turns])
 
 
 def asked_twists(gains, treads, track_width):
-    """Twists (N, 3) by gains (2, 3, 5) of left and right turns, row by row.
+    """Twists (N, 3) by gains (2, 3, 5) of left and right turns.
 
     In terms of the angle whose tangent is the tightness of the turn.
     """
-    rows = []
-    for left, right in treads:
-        speed, difference = (left + right) / 2, right - left
-        of_turn = gains[1] if speed * difference < 0 else gains[0]
-        angle = np.arctan2(difference, speed)
-        turn = difference / track_width
-        terms = [speed, turn, speed * np.sin(angle) ** 2, difference * np.cos(angle) ** 2]
-        terms.append(abs(speed) * (speed * turn))
-        rows.append([sum(g * u for g, u in zip(row, terms, strict=True)) for row in of_turn])
-    return np.array(rows)
+    left, right = np.transpose(treads)
+    speed, difference = (left + right) / 2, right - left
+    angle = np.arctan2(difference, speed)
+    turn = difference / track_width
+    terms = [speed, turn, speed * np.sin(angle) ** 2, difference * np.cos(angle) ** 2]
+    terms.append(np.abs(speed) * (speed * turn))
+    of_turn = np.where((speed * difference < 0)[:, None, None], gains[1], gains[0])
+    return np.stack([sum(of_turn[:, n, k] * u for k, u in enumerate(terms)) for n in range(3)], 1)
 
 
 def gains_of(shared, *of_turns):
