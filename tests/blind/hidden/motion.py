@@ -84,17 +84,18 @@ def _by_place(twist, drive, at_place):
     rows, half_s = [], STEP_S / 2
     x, y, yaw = drive.start
     for row, base in enumerate(twist.tolist()):
-        rates, roll, pitch, omega = _rates(x, y, yaw, row, base, drive.ground, at_place)
+        rates, roll, pitch, omega = _rates((x, y, yaw), row, base, drive.ground, at_place)
         rows.append((x, y, roll, pitch, yaw, omega))
         middle = x + half_s * rates[0], y + half_s * rates[1], yaw + half_s * rates[2]
-        rates = _rates(*middle, row, base, drive.ground, at_place)[0]
+        rates = _rates(middle, row, base, drive.ground, at_place)[0]
         x, y, yaw = x + STEP_S * rates[0], y + STEP_S * rates[1], yaw + STEP_S * rates[2]
     table = np.array(rows)
     return table[:, :5], table[:, 5]
 
 
-def _rates(x, y, yaw, row, twist, ground, at_place):
+def _rates(pose, row, twist, ground, at_place):
     """Rates of x, y and yaw, roll, pitch, and the rate about the body's z."""
+    x, y, yaw = pose
     g_x, g_y, g_xx, g_xy, g_yy = ground.slopes(x, y)
     roll, pitch = attitude_on(g_x, g_y, yaw)
     if at_place is not None:

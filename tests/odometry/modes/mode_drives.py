@@ -35,7 +35,8 @@ def velocities(A, B, treads, step_s, start=(0.5, 0.0)):
     """Speed and yaw rate (N, 2) of A and B (N, 2, 2), each in force to the next stamp."""
     states = [np.array(start)]
     for a, b, u in zip(A[:-1], B[:-1], treads[:-1], strict=True):
-        states.append(integrated(lambda q, a=a, b=b, u=u: a @ q + b @ u, states[-1], step_s, PIECES))
+        pushed = b @ u
+        states.append(integrated(lambda q, a=a, p=pushed: a @ q + p, states[-1], step_s, PIECES))
     return np.array(states)
 
 
