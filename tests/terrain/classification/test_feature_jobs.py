@@ -48,9 +48,10 @@ def test_processes_share_the_patches_and_give_the_same_bytes(images, monkeypatch
         "Parallel",
         lambda n_jobs, **of: seen.append(n_jobs) or parallel(n_jobs, **of),
     )
-    shared = [shared_feature_matrix(images, GREY, processes=count) for count in (1, 2, 100)]
+    monkeypatch.setattr(feature_jobs, "cpu_count", lambda: 2)
+    shared = [shared_feature_matrix(images, GREY, processes=count) for count in (1, 2, 100, -1)]
     get_reusable_executor().shutdown(wait=True)
-    assert seen == [1, 2, 2]  # no more than are worth the while
+    assert seen == [1, 2, 2, 2]  # no more than are worth the while; by -1 as many as cores
     assert {one.tobytes() for one in shared} == {feature_matrix(images, GREY).tobytes()}
 
 

@@ -1,4 +1,4 @@
-"""Files are the same, byte by byte, whatever the locale, time zone, hash seed and threads."""
+"""Files are the same, byte by byte, in any locale, time zone, hash seed, threads and processes."""
 
 import os
 import shutil
@@ -19,7 +19,7 @@ for line in sys.argv[1:]:
         if ended.code:
             sys.exit(f"{line}: {ended.code}")
 """
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LOKY_MAX_CPU_COUNT")
 USUAL = {"LC_ALL": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "0"} | dict.fromkeys(THREADS, "1")
 UNUSUAL = {  # text is ASCII where no encoding is named
     "LC_ALL": "C",
