@@ -27,12 +27,16 @@ settings.load_profile("project")
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection():
-    """Seek no garbage among the tests, of which nothing goes: neither here nor in their run."""
+    """Seek no garbage among the tests, of which nothing goes: neither here nor in their run.
+
+    In their run after 10,000 new objects and not 700: 3 % of the time in place of 5.
+    """
     gc.disable()
     try:
         return (yield)
     finally:
         gc.freeze()
+        gc.set_threshold(10_000, 10, 10)
         gc.enable()
 
 
