@@ -16,9 +16,9 @@ from terrain.classification.likeness import Likeness, TrainingLook
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained import Classifier
 from terrain.errors import CameraError, ImageError
+from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.image_label import ImageLabel, answered
 from terrain.image_labels.still_image import StillWatch
-from terrain.image_labels.terrain_details import DetailsWatch
 from terrain.images import read_image
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape

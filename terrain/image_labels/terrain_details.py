@@ -7,10 +7,8 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.image_labels.carried_image import carried_back
-from terrain.images import to_grey
 
 WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
 OCTAVES, SMOOTHED_PX = 3, 3  # finest first: what a mean over so many pixels takes away of each
@@ -23,10 +21,6 @@ DISTINCT = 1.0  # grey levels of details: tiles with less may show noise alone
 # gamma 0.6 never. Of the focus -0.47 and more; blur of 2 px of 640 -0.35 to -0.9, blur by motion
 # of 9 px below -0.4 in 2 of 100
 LOSS = float(np.log(0.6))
-LOSSES = (LOSS, float(np.log(0.65)))  # of contrast, and of focus of one image at once
-REGAINED = 2 / 3  # of a loss: the details are back
-APART_M = 0.12  # of travel between images that are compared, at least where none has lost details
-NEAR_M = 0.4  # of travel from the last image before a loss: farther on terrain looks finer, nearer
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,61 +114,3 @@ def change_of_details(
     of_details, of_both, focus = np.median([details, over_light, finest - coarser[0]], axis=1)
     contrast = np.sign(of_details) * np.sqrt(max(of_details * of_both, 0.0))
     return np.array([contrast, focus])
-
-
-class DetailsWatch:
-    """Follows the images of a camera, and says from when to when they lack details.
-
-    An image is compared with one that was taken shortly before, and only where both show the same
-    terrain: smooth terrain has lost nothing. The last image before a loss is kept while the robot
-    is near, so that details may come back over some images there.
-
-    Parameters
-    ----------
-    camera : Camera
-    """
-
-    def __init__(self, camera: Camera) -> None:
-        self._camera = camera
-        self._before: tuple[TileDetails, FloatArray] | None = None
-        self._is_clear = True  # the image before; not so where it lacks details as well
-        self._lost: tuple[int, float] | None = None  # contrast or focus, and how much of it
-
-    def has_lost(self, image: AnyArray, pose: FloatArray) -> bool:
-        """Whether an image (H, W) or (H, W, 3) lacks details that one before it showed.
-
-        The answer holds until the details of the same terrain are back: where two images have no
-        terrain in common, it cannot be determined anew. Poses (3,) are of the robot.
-        """
-        reduced = _reduced(image)
-        if self._before is None:
-            self._before = TileDetails.of(reduced), pose
-            return False
-        earlier, was = self._before
-        step = se2.between(was, pose)
-        change = change_of_details(self._camera, earlier, reduced, step)
-        had_lost, self._lost = self._lost is not None, self._lost_after(change)
-        has_lost = self._lost is not None
-        kept_m = NEAR_M if has_lost and self._is_clear else APART_M
-        if change is None or has_lost < had_lost or float(np.hypot(*step[:2])) > kept_m:
-            self._before, self._is_clear = (TileDetails.of(reduced), pose), not has_lost
-        return has_lost
-
-    def _lost_after(self, change: FloatArray | None) -> tuple[int, float] | None:
-        """What is lost after a change: which of the two kinds, and its logarithm."""
-        if change is None:
-            return self._lost
-        if self._lost is None:
-            kind = int((change / LOSSES).argmax())
-            return (kind, float(change[kind])) if change[kind] < LOSSES[kind] else None
-        kind, loss = self._lost
-        regained = change[kind] - (loss if self._is_clear else 0.0)
-        return None if regained > -REGAINED * loss else self._lost
-
-
-def _reduced(image: AnyArray) -> AnyArray:
-    """An image in grey, at most WIDTH_PX wide."""
-    if image.shape[1] > WIDTH_PX:
-        height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
-        image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-    return to_grey(image)

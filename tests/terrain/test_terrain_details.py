@@ -4,13 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.image_labels.terrain_details import (
-    LOSS,
-    NEAR_M,
-    WIDTH_PX,
-    DetailsWatch,
-    TileDetails,
-)
+from terrain.image_labels.details_watch import NEAR_M, DetailsWatch
+from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails
 from terrain.image_labels.terrain_details import change_of_details as change_from
 from tests.terrain.test_still_image import SIZE, down
 from tests.terrain.test_still_image import seen as shown

@@ -12,7 +12,7 @@ from odometry.run_terrains import Footing
 from terrain.camera.camera import Camera
 from terrain.classification.likeness import Likeness
 from terrain.errors import CameraError
-from terrain.image_labels.terrain_details import DetailsWatch
+from terrain.image_labels.details_watch import DetailsWatch
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
