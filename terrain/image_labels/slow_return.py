@@ -31,8 +31,8 @@ class SlowReturn:
 
     def __init__(self) -> None:
         self._clear_m, self._clear_change = 0.0, 0.0
-        self._clear: list[_Look] = []
-        self._trail: list[_Look] = []
+        self._clear: list[_Followed] = []
+        self._trail: list[_Followed] = []
         self._first = self._greatest = 0.0
 
     def add_clear(self, details: TileDetails, contrast: float | None, ahead_m: float) -> None:
@@ -41,13 +41,13 @@ class SlowReturn:
         if contrast is not None and ahead_m > 0:
             self._clear_m += ahead_m
             self._clear_change += contrast
-        recent = [look for look in self._clear if look.way_m >= way_m - ALIKE_M]
-        self._clear = [*recent, _Look(details, way_m)]
+        recent = [image for image in self._clear if image.way_m >= way_m - ALIKE_M]
+        self._clear = [*recent, _Followed(details, way_m)]
 
     def begin(self, details: TileDetails, contrast: float) -> None:
         """Begin with an image that lacks details, by its contrast against a clear one."""
         self._first = self._greatest = contrast
-        self._trail = [_Look(details)]
+        self._trail = [_Followed(details)]
 
     def is_back(self, details: TileDetails, contrast: float | None, ahead_m: float) -> bool:
         """Whether details are back in an image after others that lack them.
@@ -55,37 +55,37 @@ class SlowReturn:
         Where two images cannot be compared, or the robot does not drive ahead, all begins anew.
         """
         if contrast is None or ahead_m <= 0 or self._clear_m < CLEAR_M:
-            self._trail = [_Look(details)]
+            self._trail = [_Followed(details)]
             return False
         before = self._trail[-1]
         risen = before.risen + contrast - self._clear_change / self._clear_m * ahead_m
         self._greatest = min(self._greatest, self._first + risen)
-        now = _Look(details, before.way_m + ahead_m, risen)
-        recent = [look for look in self._trail if look.way_m >= now.way_m - STEADY_M - RISE_M]
+        now = _Followed(details, before.way_m + ahead_m, risen)
+        recent = [image for image in self._trail if image.way_m >= now.way_m - STEADY_M - RISE_M]
         self._trail = [*recent, now]
         return self._has_risen() and self._is_alike()
 
     def _has_risen(self) -> bool:
         """Whether details have risen by what was lost, and change as in clear images since."""
         now = self._trail[-1]
-        earlier = [look for look in self._trail if look.way_m <= now.way_m - STEADY_M]
+        earlier = [image for image in self._trail if image.way_m <= now.way_m - STEADY_M]
         if not earlier:
             return False
         since = earlier[-1]
         change_per_m = (now.risen - since.risen) / (now.way_m - since.way_m)
-        rise = now.risen - min(look.risen for look in earlier)
+        rise = now.risen - min(image.risen for image in earlier)
         least = max(-RISEN * self._greatest, LEAST_RISE)
         return abs(change_per_m) < STEADY_PER_M and rise > least
 
     def _is_alike(self) -> bool:
         """Whether the latest images show as many details as the last clear ones."""
         now_m = self._trail[-1].way_m
-        latest = [look for look in self._trail if look.way_m >= now_m - NOW_M]
+        latest = [image for image in self._trail if image.way_m >= now_m - NOW_M]
         return bool(np.all(_typical(latest) > _typical(self._clear) - ALIKE))
 
 
 @dataclass(frozen=True, eq=False)
-class _Look:
+class _Followed:
     """An image, the travel of the robot, and how far details have risen.
 
     Attributes
@@ -109,8 +109,8 @@ def _levels(details: TileDetails) -> FloatArray:
     return np.array([np.median(over_light), focus])
 
 
-def _typical(looks: list[_Look]) -> FloatArray:
+def _typical(images: list[_Followed]) -> FloatArray:
     """Median levels (2,); NaN where more than half of the images have none."""
-    levels = np.array([_levels(look.details) for look in looks])
+    levels = np.array([_levels(image.details) for image in images])
     known = levels[np.isfinite(levels).all(axis=1)]
     return np.median(known, axis=0) if 2 * len(known) >= len(levels) else np.full(2, np.nan)
