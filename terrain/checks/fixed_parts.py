@@ -1,4 +1,4 @@
-"""Parts of the image that stay where they are while the terrain moves: the robot, or dirt."""
+"""Parts of the image that stay while the terrain moves: the robot, its shadow, dirt."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -10,19 +10,26 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray, spread
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 from terrain.camera.camera import Camera
+from terrain.checks.lasting_shade import lasting_shade
 from terrain.checks.terrain_views import FARTHEST, TerrainViews
 from terrain.image_labels.carried_image import middles, places_at, tiles
 
 ROBOT_IN_IMAGES = "robot_in_images"
 APART_M = 0.5  # of travel between images: by then the terrain is another
-FEWEST, MOST = 12, 24  # images that are compared
+FEWEST, MOST = 12, 48  # images that are compared
+QUARTERS = 4  # spans of them that are looked at by themselves: dirt comes, and a drop goes
 TILE_PX = 8
 FINEST_PX, COARSEST_PX = 1.0, 4.0  # sizes of the details of a tile
 # Mean correlation of a tile in pairs of images: terrain has 0.2 at most, a part of the robot 0.7
 FIXED = 0.5
 LEAST_GREY = 1.0  # of details: a tile with less shows noise, or blocks of JPEG
-# Of the tiles round a smooth part, in the mean: half of them may be terrain, which has 0.0
-BORDER, LEAST_BORDER = 0.05, 8
+# Of the tiles round a smooth part, in the mean: terrain has 0, of N images 0.4 / N more or less,
+# and blocks of JPEG 0.03
+BORDER, BY_CHANCE, LEAST_BORDER = 0.05, 1.2, 8
+# Of the tiles at the border of a dark part: their correlation, and how much more their light varies
+# than that of tiles farther on. Spots have 0.12 to 0.3 and 0.96 to 1.24; verges along the way have
+# less, or 1.3 and more, where the robot sways by 3 cm
+SHARP, SWAYS = 0.1, 1.3
 LEAST_TILES, LEAST_FIXED = 4, 2  # of a part
 MOST_SHARE = 0.5  # of the terrain: more is no robot, but a camera that is frozen or covered
 SIMPLIFIED_PX = 2.0  # by which an outline may be off, of images of `TerrainViews`
@@ -48,25 +55,22 @@ class FixedParts:
 
 
 def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | None:
-    """Look for parts of near terrain in the image that are alike in all images of a run.
+    """Look for parts of near terrain in the image that stay in all images, or in a quarter of them.
 
     None where there are none, or too few images to say so.
     """
-    details = _details(run, views)
-    if len(details) < FEWEST:
+    images = _images(run, views)
+    if len(images) < FEWEST:
         return None
-    shape = tuple(length // TILE_PX for length in details.shape[1:])
-    near = _near_terrain(camera, details.shape[1:])
-    of_tiles = np.stack([tiles(one, TILE_PX) for one in details])
-    sizes = np.sqrt((of_tiles**2).mean(axis=2))
-    alike = _alike(of_tiles)
-    fixed = (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_GREY)
-    smooth = np.quantile(sizes, 0.9, axis=0) < LEAST_GREY
-    found = _parts(*(of.reshape(shape) for of in (fixed & near, smooth & near, alike)))
-    share = float(found.ravel()[near].mean()) if near.any() else 0.0
+    near = _near_terrain(camera, images.shape[1:])
+    if not near.any():
+        return None
+    spans = [images, *np.array_split(images, QUARTERS)]
+    found = np.any([_fixed(span, near) for span in spans if len(span) >= FEWEST], axis=0)
+    share = float(found.ravel()[near].mean())
     if not 0 < share < MOST_SHARE:
         return None
-    return FixedParts(tuple(_outlines(found, camera.image_size)), share, len(details))
+    return FixedParts(tuple(_outlines(found, camera.image_size)), share, len(images))
 
 
 def robot_in_images(parts: FixedParts | None) -> Iterator[Finding]:
@@ -84,28 +88,28 @@ def robot_in_images(parts: FixedParts | None) -> Iterator[Finding]:
     yield Finding(
         ROBOT_IN_IMAGES,
         Level.NOTE,
-        f"{100 * parts.share:.0f} % of the terrain in the image stays the same in "
-        f"{parts.images} images, while the rest of it moves",
-        "The robot itself (a bumper, a wheel, an arm), dirt on the lens or a caption; or terrain "
-        "in the shadow of a robot that hardly turns",
+        f"{100 * parts.share:.0f} % of the terrain in the image stays as it is while the rest of "
+        f"it moves, all the time or for a while, by {parts.images} images",
+        "The robot itself (a bumper, a wheel, an arm) or its shadow, dirt on the lens or a "
+        "caption; or an edge of the terrain along which the robot drove",
         "Nothing to do: run, batch and label look beside it. To state it once for all: "
         f"[camera] robot_outlines = {outlines}",
         mend=mend,
     )
 
 
-def _details(run: Run, views: TerrainViews) -> AnyArray:
-    """Details (N, h, w) of images that are some travel apart, of one size."""
+def _images(run: Run, views: TerrainViews) -> AnyArray:
+    """Grey images (N, h, w) that are some travel apart, of one size."""
     if run.images is None:
         return np.empty((0, 0, 0))
-    found = []
-    for row in _rows(run, run.images.stamps_s):
-        image = views.grey(str(run.images["file"][row]))
-        if image is not None:
-            values = image.astype(np.float32)
-            fine, coarse = (cv2.GaussianBlur(values, (0, 0), px) for px in (FINEST_PX, COARSEST_PX))
-            found.append(fine - coarse)
-    return np.array(found)
+    rows = _rows(run, run.images.stamps_s)
+    found = (views.grey(str(run.images["file"][row])) for row in rows)
+    return np.array([image for image in found if image is not None], dtype=np.float32)
+
+
+def _details(image: AnyArray) -> AnyArray:
+    fine, coarse = (cv2.GaussianBlur(image, (0, 0), size) for size in (FINEST_PX, COARSEST_PX))
+    return np.asarray(fine - coarse)
 
 
 def _rows(run: Run, stamps_s: FloatArray) -> IntArray:
@@ -128,24 +132,67 @@ def _alike(of_tiles: AnyArray) -> FloatArray:
     return np.asarray((count * (units.mean(axis=0) ** 2).sum(axis=1) - 1) / (count - 1))
 
 
-def _parts(fixed: BoolArray, smooth: BoolArray, alike: FloatArray) -> BoolArray:
-    """Tiles (rows, columns) of the parts, with those beside them.
+def _fixed(images: AnyArray, near: BoolArray) -> BoolArray:
+    """Tiles (rows, columns) that stay in images (N, h, w), with those beside them.
 
-    A part has fixed tiles, and smooth ones between and beside them; or it is all smooth, and its
-    border stays: that of smooth terrain moves.
+    All of them where the camera is frozen.
     """
-    around = np.ones((3, 3), np.uint8)
-    found = np.zeros(fixed.shape, dtype=np.bool_)
-    count, labels = cv2.connectedComponents((fixed | smooth).astype(np.uint8), connectivity=8)
-    for label in range(1, count):
-        part = (labels == label).astype(np.uint8)
-        border = (cv2.dilate(part, around) - part) > 0
-        is_robot = np.count_nonzero(fixed & (part > 0)) >= LEAST_FIXED or (
-            np.count_nonzero(border) >= LEAST_BORDER and alike[border].mean() > BORDER
-        )
-        if is_robot and part.sum() >= LEAST_TILES:
-            found |= cv2.dilate(part, around) > 0
+    shape = tuple(length // TILE_PX for length in images.shape[1:])
+    of_tiles = np.stack([tiles(_details(image), TILE_PX) for image in images])
+    sizes = np.sqrt((of_tiles**2).mean(axis=2))
+    alike = _alike(of_tiles)
+    fixed = near & (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_GREY)
+    if fixed[near].mean() > MOST_SHARE:
+        return np.ones(shape, dtype=np.bool_)
+    smooth = near & (np.quantile(sizes, 0.9, axis=0) < LEAST_GREY)
+    shaded, deviation = lasting_shade(images, near, TILE_PX)
+    fixed, smooth, shaded = (of.reshape(shape) for of in (fixed, smooth, shaded))
+    alike, deviation = alike.reshape(shape), deviation.reshape(shape)
+    parts = [
+        *(
+            part
+            for part in _parts(fixed | smooth)
+            if np.count_nonzero(fixed & part) >= LEAST_FIXED
+            or _stays(alike[_grown(part) & ~part], len(images))
+        ),
+        *(part for part in _parts(shaded) if alike[_border(part)].mean() > SHARP),
+    ]
+    found = np.zeros(shape, dtype=np.bool_)
+    for part in parts:
+        if not _sways(part, deviation):
+            found |= _grown(part)
     return found
+
+
+def _parts(chosen: BoolArray) -> Iterator[BoolArray]:
+    """Connected parts (rows, columns) of LEAST_TILES and more."""
+    count, labels = cv2.connectedComponents(chosen.astype(np.uint8), connectivity=8)
+    parts = (labels == label for label in range(1, count))
+    return (part for part in parts if np.count_nonzero(part) >= LEAST_TILES)
+
+
+def _grown(part: BoolArray) -> BoolArray:
+    """A part with the tiles beside it."""
+    return np.asarray(cv2.dilate(part.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0)
+
+
+def _stays(alike: FloatArray, images: int) -> bool:
+    """Whether the border (n,) of a smooth part stays: that of smooth terrain moves."""
+    return len(alike) >= LEAST_BORDER and float(alike.mean()) > max(BORDER, BY_CHANCE / images)
+
+
+def _border(part: BoolArray) -> BoolArray:
+    """The tiles within and round a part at its border."""
+    return _grown(part) & _grown(~part)
+
+
+def _sways(part: BoolArray, deviation: FloatArray) -> bool:
+    """Whether the light at the border varies more than within, and than farther off: a verge."""
+    border = _border(part)
+    beside = _grown(_grown(_grown(_grown(part)))) & ~_grown(_grown(part)) & (deviation > 0)
+    within = part & ~border
+    usual = [float(np.median(deviation[tiles])) for tiles in (beside, within) if tiles.any()]
+    return float(np.sqrt((deviation[border] ** 2).mean())) > SWAYS * max(usual, default=0.0)
 
 
 def _outlines(found: BoolArray, size: tuple[int, int]) -> Iterator[FloatArray]:

@@ -17,6 +17,7 @@ from terrain.config import Config
 from terrain.run_options import RunOptions
 
 SIZE = (640, 480)
+SWAY_PX = 2.0
 
 
 def bumper(image, rng):
@@ -28,8 +29,8 @@ def bumper(image, rng):
 
 
 def smooth_plate(image, rng):
-    """The same with nothing on it, and nearly as bright as the terrain."""
-    cv2.rectangle(image, (0, 200), (320, 240), 110, -1)
+    """The same with nothing on it, and as bright as the terrain."""
+    cv2.rectangle(image, (0, 200), (320, 240), 122, -1)
     return image + rng.normal(0, 0.2, image.shape)
 
 
@@ -37,6 +38,31 @@ def leg(image, rng):
     """A bright tube of a lidar's tripod, not at the border."""
     cv2.rectangle(image, (150, 120), (160, 190), 210, -1)
     return image + rng.normal(0, 1.5, image.shape)
+
+
+def drops(image, _):
+    """Three dark spots without an edge, before the terrain ahead."""
+    spots = np.zeros_like(image)
+    for place in ((110, 150), (160, 190), (205, 160)):
+        cv2.circle(spots, place, 16, 1.0, -1)
+    return image * (1 - 0.75 * cv2.GaussianBlur(spots, (0, 0), 3))
+
+
+def shadow(image, _):
+    """Of a robot that has the sun behind it."""
+    outline = np.array([[100, 240], [110, 150], [190, 150], [200, 240]])
+    return image * (1 - 0.55 * cv2.fillPoly(np.zeros_like(image), [outline], 1.0))
+
+
+def verge(image, rng):
+    """Dark terrain to the left of a smooth way, which the robot keeps to some pixels."""
+    smooth = 120 + 0.3 * (image - 120)
+    return smooth * np.where(np.arange(320) < 120 + SWAY_PX * rng.normal(), 0.5, 1.0)
+
+
+def soft_verge(image, _):
+    """Terrain that becomes darker to the left, without an edge."""
+    return image * (0.35 + 0.65 / (1 + np.exp((100 - np.arange(320)) / 8)))
 
 
 def frame(image, rng):
@@ -51,6 +77,7 @@ PARTS = {
     bumper: (slice(402, 480), slice(0, 640)),
     smooth_plate: (slice(402, 480), slice(0, 640)),
     leg: (slice(242, 380), slice(302, 320)),
+    shadow: (slice(300, 480), slice(210, 390)),
 }
 
 
@@ -87,12 +114,30 @@ def test_what_stays_is_outlined_and_little_beside_it(drive, camera, draw):
         lambda image, _: image,
         lambda image, rng: 0.3 * image + 60 + rng.normal(0, 4, image.shape),
         lambda image, _: 0 * image + cv2.resize(image[:2, :2], (320, 240)),
+        verge,
+        soft_verge,
         lambda image, _: 100 + (image - 100) * np.clip((180 - np.arange(240)) / 180, 0, 1)[:, None],
     ],
-    ids=["as it is", "dim and noisy", "nothing but a smooth surface", "smooth where it is near"],
+    ids=[
+        "as it is",
+        "dim and noisy",
+        "nothing but a smooth surface",
+        "a verge",
+        "a soft verge",
+        "smooth where it is near",
+    ],
 )
 def test_terrain_has_no_parts_that_stay(drive, camera, draw):
     assert fixed_parts(drive, camera, WithParts(drive, draw)) is None
+
+
+def test_drops_are_found_from_when_they_come(drive, camera):
+    images = WithParts(drive, lambda image, _: image)
+    count = iter(range(100))
+    images._draw = lambda image, rng: drops(image, rng) if next(count) > 20 else image
+    found = covered(fixed_parts(drive, camera, images).outlines, SIZE)
+    assert all(found[v, u] for u, v in ((220, 300), (320, 380), (410, 320)))
+    assert found.mean() < 0.15
 
 
 def test_a_bumper_before_dim_terrain_is_one(drive, camera):
