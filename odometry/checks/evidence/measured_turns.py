@@ -54,6 +54,22 @@ class MeasuredTurns:
         ratio = of_metre / float(fit.coefficients[1 - side])
         return 1 - left > PIVOTS and 1 / ALIKE < ratio < ALIKE
 
+    def speeds_m_s(
+        self, fastest_m_s: float, spans: list[tuple[float, float]], side: int
+    ) -> FloatArray | None:
+        """Speeds (N,) of one tread that the turns ask for in spans, rest left out.
+
+        None where the share of that tread is not known.
+        """
+        inside = np.any([self._within(span) for span in spans], axis=0)
+        fit = relation(np.where(inside, np.nan, self.target), *self._treads_m.T)
+        if fit is None or not fit.certain(side):
+            return None
+        inside &= self._moving(fastest_m_s)
+        of_other = fit.coefficients[1 - side] * self._treads_m[inside, 1 - side]
+        way_m = (self.target[inside] - of_other) / fit.coefficients[side]
+        return np.asarray(way_m / self.motion.lasts_s[inside])
+
     @property
     def _treads_m(self) -> FloatArray:
         return np.stack([self.motion.left_m, self.motion.right_m], axis=-1)

@@ -17,6 +17,11 @@ OF_OTHER_TIMES = (  # speeds that are not of their stamps
     | {"turn_blocked", "stuck_encoder", "treads_not_proportional", "far_sensor"}
 )
 
+OF_LOST = frozenset(
+    {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
+    | {"tread_offset", "treads_unequal", "treads_late", "treads_are_commands"}
+)
+
 # Cause: what follows from it.
 CONSEQUENCES: dict[str, frozenset[str]] = {
     "latitude_longitude": POSES | YAW | {"positions_mirrored", "yaw_reversed", "coarse_positions"},
@@ -140,10 +145,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"gyroscope_unit", "pose_late", "treads_late", "pose_jumps", "poses_unrelated"}
         | {"slip_episodes", "treads_frozen"}
     ),
-    "stuck_encoder": frozenset(
-        {"slip", "slip_in_turns", "scale", "pose_jumps", "treads_unrelated", "gyroscope_unrelated"}
-        | {"tread_offset", "treads_unequal", "treads_late", "treads_are_commands"}
-    ),
+    "stuck_encoder": OF_LOST,
+    "slow_speeds_zero": OF_LOST
+    | {"dropped_speeds", "turn_blocked", "turns_at_rest", "straight_drives", "treads_frozen"},
     "gyroscope_clipped": frozenset(
         {"yaw_jumps", "gyroscope_unit", "gyroscope_dead", "gyroscope_bias", "yaw_bent"}
         | {"track_width", "slip_in_turns"}
@@ -170,7 +174,14 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
 
 # No curve of the speeds is fitted where these were found.
 NOT_CURVES = frozenset(
-    {"stuck_encoder", "treads_frozen", "treads_are_twist", "treads_unrelated", "poses_unrelated"}
+    {
+        "stuck_encoder",
+        "slow_speeds_zero",
+        "treads_frozen",
+        "treads_are_twist",
+        "treads_unrelated",
+        "poses_unrelated",
+    }
     | {"treads_equal", "treads_unsigned"}
 )
 
@@ -191,6 +202,8 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
     implied = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    if "stuck_encoder" in implied:
+        implied.add("slow_speeds_zero")
     if names & NOT_CURVES:
         implied.add("treads_not_proportional")
     faults = {f.name for f in findings if f.level is not Level.NOTE} - {"sensors_disagree"}

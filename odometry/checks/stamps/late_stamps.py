@@ -79,6 +79,7 @@ NAMES = {"pose": "poses", "treads": "treads", "gyroscope": "gyroscope"}
 
 EVEN = 1e-3  # of the period
 SMOOTH = "; or its rate is smoothed (a low-pass filter)"
+SMOOTH_TOO = ", or its rate is smoothed"
 MADE_UP = "; or rows of odometry.csv were lost, and its stamps made up at an even pace"
 
 
@@ -127,8 +128,9 @@ def pose_late(lag: Lag, other: str, *, gyroscope: bool = True) -> Finding:
     Where there is a `gyroscope` that does not decide, the words say so.
     """
     word, opposite = _words(lag)
-    more = ""
+    begins, more = "Stamps", ""
     if other == "the treads":
+        begins = "Either stamps"
         without = "by the gyroscope here" if gyroscope else "without a gyroscope"
         more = f"; or those of the treads are {opposite}: {without} this cannot be determined"
         if lag.seconds > 0:
@@ -139,7 +141,7 @@ def pose_late(lag: Lag, other: str, *, gyroscope: bool = True) -> Finding:
         "pose_late",
         Level.WARNING,
         _seen("poses", lag, other),
-        f"Stamps of poses are {word}: a delay of the sensor, its filter or its transport, or "
+        f"{begins} of poses are {word}: a delay of the sensor, its filter or its transport, or "
         f"stamps at arrival{more}",
         _remedy("poses", lag),
         mend=changed("pose", "t", lambda stamps_s: stamps_s - lag.seconds),
@@ -171,14 +173,16 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> 
     Where poses have not decided it, the other sensor may be the one, and is named as well.
     """
     word, opposite = _words(lag)
+    begins = "Stamps" if decided else "Either stamps"
     cause = (
-        f"Stamps of treads are {word}: a delay of the sensor, its filter or its transport, or "
+        f"{begins} of treads are {word}: a delay of the sensor, its filter or its transport, or "
         "stamps at arrival"
     )
     undecided = (
         ""
         if decided
-        else f"; or stamps of {other} are {opposite}: poses do not decide between these"
+        else f"; or stamps of {other} are {opposite}{SMOOTH_TOO * (lag.seconds < 0)}: poses do not "
+        "decide between these"
     )
     if lag.seconds > 0:
         smooth = f"{cause}; or the speeds are smoothed (a low-pass filter){undecided}"
@@ -194,7 +198,8 @@ def treads_apart(evidence: Evidence, lag: Lag, other: str, *, decided: bool) -> 
         "treads_are_commands",
         lag,
         other,
-        "v_left and v_right are commands, which the robot follows later, or the robot itself turns "
+        f"{'' if decided else 'Either '}v_left and v_right are commands, which the robot follows "
+        "later, or the robot itself turns "
         f"so much later than its wheels (soft terrain, tracks, a heavy load){more}{undecided}",
         mend,
     )

@@ -62,7 +62,7 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
 
 def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
     """Lags of the first of two sensors behind the second, of those that can be estimated."""
-    signals = _headings(evidence)
+    signals = headings_by_sensor(evidence)
     return {
         (late, early): lag
         for late, early in (("pose", "gyroscope"), ("pose", "treads"), ("treads", "gyroscope"))
@@ -72,7 +72,7 @@ def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
     }
 
 
-def _headings(evidence: Evidence) -> dict[str, Signal]:
+def headings_by_sensor(evidence: Evidence) -> dict[str, Signal]:
     """Heading of every sensor as a function of the stamp, turning the same way."""
     of = evidence.integrals
     found: dict[str, Signal] = {}
@@ -206,7 +206,7 @@ def _is_on_time(lags: dict[tuple[str, str], Lag], pair: tuple[str, str], than: L
 
 def _poses_or_treads(evidence: Evidence, lag: Lag) -> Iterator[Finding]:
     """Without a gyroscope that says more: treads that the robot follows later, or late poses."""
-    gyroscope = "gyroscope" in _headings(evidence)
+    gyroscope = "gyroscope" in headings_by_sensor(evidence)
     if not gyroscope and lag.seconds > 0:
         kind, _ = commands_or_stamps(evidence, lag.seconds)
         if kind == "commands":

@@ -22,8 +22,8 @@ AS_WELL = 1.15  # times what an offset leaves of the turns: the other one explai
 TWIST = 0.15  # share of the turn that may come from the other column
 
 MIXED = (
-    "; or one column holds a part of the other tread (cross-talk): without a measured way along "
-    "these cannot be distinguished"
+    "; or one column holds a part of the other tread (cross-talk), or what measures the turns has "
+    "a part of the speed: without a measured way along these cannot be distinguished"
 )
 
 
@@ -90,15 +90,16 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
         )
         return
     sure = forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES)
-    mixed = "" if sure else MIXED
+    begins, mixed = ("One", "") if sure else ("Either one", MIXED)
     side = "right" if ratio > 1 else "left"
     yield Finding(
         "treads_unequal",
         Level.WARNING,
         f"a metre of the left tread turns the robot by {left:.3g} rad, one of the right by "
         f"{right:.3g} rad",
-        f"One side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} times too "
-        f"much against the other (unit, wheel radius, gear, ticks of one side, a flat tyre){mixed}",
+        f"{begins} side has another scale: the {side} tread reads {max(ratio, 1 / ratio):.3g} "
+        "times too much against the other (unit, wheel radius, gear, ticks of one side, a flat "
+        f"tyre){mixed}",
         "Compare both sides on a straight drive",
         mend=_as_the_other(evidence, ratio),
     )

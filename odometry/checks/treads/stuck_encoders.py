@@ -9,14 +9,13 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.measured_turns import STUCK_S, measured_turns
 from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.treads.slow_speeds import slow_speeds_zero
 from odometry.windows.spans import constant_spans, runs_of
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
 BOTH = 0.8  # share of such a time in which both treads keep their values: a held command does so
 PIVOTS = 0.8  # share of the turns that the other tread explains where the robot turns about one
 LEAST_ROWS = 20  # windows
-LEAST = 0.01  # of the values that are not zero: the slowest that is read
-BAND = 0.1  # of the fastest value: from where no slower one is read
 SHOWN = 3  # times of which begin and end are printed
 
 
@@ -44,11 +43,15 @@ def _stuck(
     values = evidence.speeds_m_s[:, ("v_left", "v_right").index(name)]
     in_run_time = [(evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans]
     times = ", ".join(f"from {b:.1f} to {e:.1f} s" for b, e in in_run_time[:SHOWN])
-    more = " ..." if len(spans) > SHOWN else ""
+    times += " ..." if len(spans) > SHOWN else ""
+    if np.abs(values[row]) < STANDING * evidence.fastest_m_s:
+        slow = slow_speeds_zero(evidence, name, spans, times)
+        if slow is not None:
+            return slow
     return Finding(
         "stuck_encoder",
         Level.WARNING,
-        f"{name} stays at {values[row]:.4g} m/s {times}{more} of run time, "
+        f"{name} stays at {values[row]:.4g} m/s {times} of run time, "
         "while gyroscope or poses say that this tread goes on differently",
         f"The encoder of the {name.removeprefix('v_')} tread is stuck or was lost"
         + _or_limited(values, float(values[row]), both=both),
@@ -59,11 +62,8 @@ def _stuck(
 
 def _or_limited(values: FloatArray, kept: float, *, both: bool) -> str:
     """What else keeps a value: a limit of the speeds that are read."""
-    least = float(np.quantile(np.abs(values[values != 0]), LEAST)) if values.any() else 0.0
     if kept in (values.max(), values.min()) and kept != 0:
         other = f"it is clipped at {kept:.4g} m/s, its largest value"
-    elif kept == 0 and least > BAND * np.abs(values).max():
-        other = f"slow speeds read zero (a dead band): it has none between 0 and {least:.2g} m/s"
     elif both and abs(kept) < STANDING * np.abs(values).max():
         other = "slow speeds read zero (a dead band, play of the gear): both treads have such times"
     else:

@@ -45,7 +45,9 @@ def test_a_name_beside_a_warning_is_a_sensor_or_the_robot(scaled_result):
     )
     assert said[2].startswith("First correct what check warns of")
     assert "If it is wheel_scale: " in said[2]
-    assert said[3] == "Check warns: stamps of the poses late or early (pose_late, grass, yard)."
+    assert said[3] == (
+        "Check warns: poses late or early, by stamps or a filter (pose_late, grass, yard)."
+    )
 
 
 def test_true_slip_accuses_no_sensor_and_is_said(scaled_result):

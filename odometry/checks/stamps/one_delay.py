@@ -1,0 +1,193 @@
+"""Whether a sensor is later than another by one delay.
+
+A filter makes it slower, rows of two sources give it two delays at once, and a clock that is set
+gives it one delay before and another one after.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag, Signal
+from odometry.checks.stamps.late_stamps import CLEARLY, CONSTANTS_S, NAMES
+from odometry.checks.stamps.timing import headings_by_sensor, pose_period_s
+
+GRID_S, STEP_S, REACH_S = 0.05, 0.02, 0.6  # delays around the lag that was found
+LEAST_WIDTH_S = 0.3  # over which rates are taken
+LEAST_LAG_S = 0.1  # with less there is nothing to tell a delay from a filter
+FILTER_S = 6.0  # time constants after which nothing is left of a value
+# Shares of the squares that one delay leaves, or that delay over a wider window. Of 130 pairs of
+# sensors with one delay a filter left 1.05 and more, two delays one after the other 0.95 and more;
+# a filter of most pairs with one 0.02 to 0.86, and two delays 0.25 to 0.70 of clocks that were set
+# (simulations with random drives and noise).
+SLOWER, STEPS = 0.9, 0.8
+MOST_TIMES = 8000  # at which rates are compared
+WIDER = (2.0, 4.0)  # times that width, over which noise of the early sensor is less as well
+LEAST_LEFT = 1e-3  # of the squared turns: with less one delay explains all there is
+PARTS, LEAST_PARTS = 100, 5  # of the recording, between which a clock may be set
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How one sensor answers to the turns that another one measures.
+
+    `left` is the share of the squared turns that the best delay leaves. `slower` and `stepped` are
+    what a low-pass filter of `constant_s`, and two delays before and after a moment, leave of that.
+    """
+
+    late: str
+    early: str
+    left: float
+    slower: float
+    wider: float
+    constant_s: float
+    stepped: float
+    before_s: float
+    after_s: float
+    moment_s: float
+
+    @property
+    def is_slower(self) -> bool:
+        """Whether a filter explains surely more than one delay, noise of the early one or not."""
+        share = self.slower / min(self.wider, 1.0)
+        return self.left > LEAST_LEFT and share < min(SLOWER, self.stepped)
+
+    @property
+    def is_stepped(self) -> bool:
+        """Whether two delays, one after the other, explain surely more than one."""
+        return self.left > LEAST_LEFT and self.stepped < STEPS and not self.is_slower
+
+    @property
+    def slowly(self) -> str:
+        """The cause where a filter explains it."""
+        return (
+            f"Turns of the {self.late} follow those of the {self.early} more slowly, not later by "
+            "one delay: values that are smoothed (a low-pass filter of about "
+            f"{self.constant_s:.2g} s leaves {100 * self.slower:.0f} % of what the best delay "
+            "leaves), or rows of two sources, one later than the other"
+        )
+
+    @property
+    def in_steps(self) -> str:
+        """What is known where the delay is another one before and after a moment."""
+        return (
+            f"turns of the {self.late} are {self.before_s:+.2f} s behind those of the {self.early} "
+            f"before {self.moment_s:.0f} s of run time, and {self.after_s:+.2f} s after, as by a "
+            "clock that was set or stamps that jump"
+        )
+
+
+def answers(
+    evidence: Evidence, sensor: str, lags: Mapping[tuple[str, str], Lag]
+) -> Iterator[Answer]:
+    """How a sensor and each other one follow each other, where one of both is late.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    sensor : str
+        "pose", "treads" or "gyroscope".
+    lags : dict of (late, early) to Lag
+    """
+    signals = headings_by_sensor(evidence)
+    for (first, second), lag in lags.items():
+        if sensor not in (first, second) or abs(lag.seconds) < LEAST_LAG_S:
+            continue
+        late, early = (first, second) if lag.seconds > 0 else (second, first)
+        period_s = pose_period_s(evidence) if "pose" in (late, early) else 0.0
+        width_s = max(LEAST_WIDTH_S, 2 * period_s, 2 * evidence.period_s)
+        found = _answer(evidence, (late, early), signals, abs(lag.seconds), width_s)
+        if found is not None:
+            yield found
+
+
+def is_one_delay(found: Sequence[Answer]) -> bool:
+    """Whether one delay explains the turns of a pair clearly better than a filter."""
+    return any(answer.slower > 1 / CLEARLY and not answer.is_stepped for answer in found)
+
+
+def _answer(
+    evidence: Evidence,
+    pair: tuple[str, str],
+    signals: Mapping[str, Signal],
+    lag_s: float,
+    width_s: float,
+) -> Answer | None:
+    late, early = (signals[name] for name in pair)
+    grid_s = np.arange(evidence.stamps_s[0], evidence.stamps_s[-1], GRID_S)
+    some = slice(round(FILTER_S / GRID_S), None, 1 + len(grid_s) // MOST_TIMES)
+    at_s = grid_s[some]
+    delays_s = lag_s + np.arange(-REACH_S, REACH_S + STEP_S / 2, STEP_S)
+    by_delay, *wider = (
+        np.stack([_rate(early, at_s - delay_s, times * width_s) for delay_s in delays_s])
+        for times in (1.0, *WIDER)
+    )
+    now = np.nan_to_num(_rate(early, grid_s, width_s))
+    by_filter = np.stack([_filtered(now, constant_s)[some] for constant_s in CONSTANTS_S])
+    rows = [_rate(late, at_s, width_s)[None], by_delay, by_filter, *wider]
+    known = np.all([np.isfinite(of).all(axis=0) for of in rows], axis=0)
+    if known.sum() < PARTS:
+        return None
+    measured, by_delay, by_filter, *wider = (_centred(of[:, known]) for of in rows)
+    one, slow = _left(measured[0], by_delay), _left(measured[0], by_filter)
+    best = int(np.argmin(one))
+    if not one[best] > 0:
+        return None
+    gain = float(by_delay[best] @ measured[0] / np.sum(by_delay[best] ** 2))
+    stepped, before, after, share = _stepped((measured[0] - gain * by_delay) ** 2)
+    return Answer(
+        NAMES[pair[0]],
+        NAMES[pair[1]],
+        float(one[best] / np.sum(measured**2)),
+        float(slow.min() / one[best]),
+        float(min(_left(measured[0], of).min() for of in wider) / one[best]),
+        CONSTANTS_S[int(np.argmin(slow))],
+        stepped / float(one[best]),
+        float(delays_s[before]),
+        float(delays_s[after]),
+        evidence.run_time_s(float(at_s[known][int(share * known.sum())])),
+    )
+
+
+def _centred(rates: FloatArray) -> FloatArray:
+    """Rates (D, N) less their means, as of a bias."""
+    return np.asarray(rates - rates.mean(axis=1, keepdims=True))
+
+
+def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
+    return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
+
+
+def _filtered(rates: FloatArray, constant_s: float) -> FloatArray:
+    """Rates (N,) on the grid through a lag of first order."""
+    kernel = np.exp(-np.arange(0.0, FILTER_S * constant_s, GRID_S) / constant_s)
+    return np.convolve(rates, kernel / kernel.sum())[: len(rates)]
+
+
+def _left(measured: FloatArray, by: FloatArray) -> FloatArray:
+    """Squares (D,) of measured rates (N,) that each of some rates (D, N) leaves, times a gain."""
+    explained = (by @ measured) ** 2 / np.maximum(np.sum(by**2, axis=1), 1e-300)
+    return np.asarray(np.sum(measured**2) - explained)
+
+
+def _stepped(squares: FloatArray) -> tuple[float, int, int, float]:
+    """What the best two rows of squares (D, N) leave, one before and one after the best moment.
+
+    Returns
+    -------
+    left : float
+    before, after : int
+        Rows.
+    share : float
+        Of the columns, that are before the moment.
+    """
+    edges = np.linspace(0, squares.shape[1], PARTS + 1).astype(int)[:-1]
+    before = np.cumsum(np.add.reduceat(squares, edges, axis=1), axis=1)
+    after = before[:, -1:] - before
+    left = (before.min(axis=0) + after.min(axis=0))[LEAST_PARTS:-LEAST_PARTS]
+    part = int(np.argmin(left)) + LEAST_PARTS
+    rows = int(np.argmin(before[:, part])), int(np.argmin(after[:, part]))
+    return float(left.min()), *rows, (part + 1) / PARTS
