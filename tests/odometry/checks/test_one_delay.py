@@ -10,7 +10,7 @@ from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.explained_lags import UNDECIDED
 from odometry.checks.stamps.late_stamps import followed
-from odometry.checks.stamps.one_delay import answers
+from odometry.checks.stamps.one_delay import Answer, answers
 from odometry.checks.stamps.timing import lags_of
 from tests.odometry.checks.faulty import pose_stamps, put, yaw
 from tests.odometry.checks.test_late_gyroscope import later
@@ -69,6 +69,12 @@ def test_noise_of_the_earlier_sensor_does_not_make_the_other_slower():
     assert of_pose[0].slower < 0.9  # a filter averages the noise of the poses
     assert not of_pose[0].is_slower
     assert first(run).cause.startswith("Stamps of gyroscope are late")
+
+
+@pytest.mark.parametrize(("left", "slower"), [(1e-4, False), (1e-2, True)])
+def test_where_one_delay_leaves_next_to_nothing_no_filter_explains_more(left, slower):
+    of = Answer("treads", "poses", left, 0.5, 1.0, 0.3, 1.0, 0.0, 0.0, 0.0)
+    assert of.is_slower is slower
 
 
 def test_turns_too_smooth_to_decide_say_so():

@@ -44,3 +44,12 @@ def test_a_gap_below_all_speeds_of_a_steady_drive_is_no_least_reading(sensors):
     run = drive(1 + 0.05 * np.sin(at_s / 7), 0.3 * np.sin(at_s / 2))
     found = check_recording(held(SENSORS[sensors](run), "v_left", 60, 90, 0.0)).findings[0]
     assert found.name == "stuck_encoder"
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_an_encoder_that_is_lost_amid_many_stops_is_not_slow(sensors):
+    at_s = 0.05 * np.arange(3200)
+    moves = (at_s % 25 > 20).astype(float)
+    run = drive(1.2 * moves * (1 + 0.3 * np.sin(at_s)), 0.4 * np.sin(2 * at_s) * moves)
+    found = check_recording(held(SENSORS[sensors](run), "v_left", 60, 140, 0.0)).findings[0]
+    assert found.name == "stuck_encoder"
