@@ -9,7 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.measured_turns import STUCK_S, measured_turns
 from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.treads.slow_speeds import slow_speeds_zero
+from odometry.checks.treads.slow_speeds import or_slow, slow_speeds_zero
 from odometry.windows.spans import constant_spans, runs_of
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
@@ -44,26 +44,30 @@ def _stuck(
     in_run_time = [(evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans]
     times = ", ".join(f"from {b:.1f} to {e:.1f} s" for b, e in in_run_time[:SHOWN])
     times += " ..." if len(spans) > SHOWN else ""
+    or_slowly = ""
     if np.abs(values[row]) < STANDING * evidence.fastest_m_s:
-        slow = slow_speeds_zero(evidence, name, spans, times)
-        if slow is not None:
+        if (slow := slow_speeds_zero(evidence, name, spans, times)) is not None:
             return slow
+        or_slowly = or_slow(evidence, name, spans)
+    limited = _or_limited(values, float(values[row]), or_slowly, both=both)
     return Finding(
         "stuck_encoder",
         Level.WARNING,
         f"{name} stays at {values[row]:.4g} m/s {times} of run time, "
         "while gyroscope or poses say that this tread goes on differently",
-        f"The encoder of the {name.removeprefix('v_')} tread is stuck or was lost"
-        + _or_limited(values, float(values[row]), both=both),
+        f"{'Either the' if limited else 'The'} encoder of the {name.removeprefix('v_')} tread is "
+        f"stuck or was lost{limited}",
         "Cut the recording with --from and --to, or leave it out",
         tuple(in_run_time),
     )
 
 
-def _or_limited(values: FloatArray, kept: float, *, both: bool) -> str:
+def _or_limited(values: FloatArray, kept: float, or_slowly: str, *, both: bool) -> str:
     """What else keeps a value: a limit of the speeds that are read."""
     if kept in (values.max(), values.min()) and kept != 0:
         other = f"it is clipped at {kept:.4g} m/s, its largest value"
+    elif or_slowly:
+        other = or_slowly
     elif both and abs(kept) < STANDING * np.abs(values).max():
         other = "slow speeds read zero (a dead band, play of the gear): both treads have such times"
     else:

@@ -53,3 +53,27 @@ def test_an_encoder_that_is_lost_amid_many_stops_is_not_slow(sensors):
     run = drive(1.2 * moves * (1 + 0.3 * np.sin(at_s)), 0.4 * np.sin(2 * at_s) * moves)
     found = check_recording(held(SENSORS[sensors](run), "v_left", 60, 140, 0.0)).findings[0]
     assert found.name == "stuck_encoder"
+
+
+def slower_for_a_while():
+    """Speeds of 0.3 m/s for 20 s, and of all sizes elsewhere."""
+    at_s = 0.05 * np.arange(3200)
+    speed = np.where((at_s > 60) & (at_s < 80), 0.3, 1 + 0.9 * np.sin(at_s / 3))
+    return drive(speed, 0.3 * np.sin(at_s / 1.7))
+
+
+def seldom_slow():
+    """Speeds of 0.35 m/s for 20 s, and of 2 m/s elsewhere but for a moment every 20 s."""
+    at_s = 0.05 * np.arange(3200)
+    dips = 1.6 * np.exp(-(((at_s % 20 - 10) / 0.5) ** 2))
+    return drive(np.where((at_s > 60) & (at_s < 80), 0.35, 2 - dips), 0.3 * np.sin(at_s / 1.7))
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize("driven", [slower_for_a_while, seldom_slow])
+def test_an_encoder_that_is_lost_while_slow_by_chance_may_be_either(driven, sensors):
+    """It reads slow speeds elsewhere, or is seldom slow."""
+    found = check_recording(held(SENSORS[sensors](driven()), "v_left", 60, 80, 0.0)).findings[0]
+    assert found.name == "stuck_encoder"
+    assert found.cause.startswith("Either the encoder of the left tread is stuck or was lost; or")
+    assert "slow speeds read zero" in found.cause

@@ -153,6 +153,9 @@ def slow_and_fast():
 
 def test_a_limit_of_the_speeds_is_named_beside_the_encoder():
     (found,) = stuck(limited(slow_and_fast(), "v_right", lambda v: np.minimum(v, 0.7)))
+    assert found.cause.startswith(
+        "Either the encoder of the right tread is stuck or was lost; or it"
+    )
     assert "or it is clipped at 0.7 m/s, its largest value" in found.cause
     (found,) = stuck(held(winding(), "v_right", 50, 60))
     assert found.cause == "The encoder of the right tread is stuck or was lost"
