@@ -49,7 +49,7 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
             continue  # their mean is not
         alone_late = len(found) == 1 and finding.name != "gyroscope_late"
         if alone_late and _goes_along(evidence, finding) is False:
-            yield disagreement(f"{finding.seen}, but {TURNS_ALONE}")
+            apart = apart or f"{finding.seen}, but {TURNS_ALONE}"
         elif finding.name != "pose_late":
             yield from _judged(evidence, finding, lags)
         elif not apart:

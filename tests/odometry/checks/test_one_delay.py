@@ -101,7 +101,7 @@ def test_a_clock_that_was_set_is_no_delay():
 
 def test_a_yaw_that_is_smoothed_alone_makes_no_commands_of_the_treads():
     run = without_gyroscope(stepping())
-    slow = yaw(run, lambda angle: behind_a_filter(np.unwrap(angle), 0.5, 2 * PERIOD_S))
+    slow = yaw(run, lambda angle: behind_a_filter(np.unwrap(angle), 0.3, 2 * PERIOD_S))
     finding = first(slow)
     assert finding.name == "sensors_disagree"
     assert "turns alone are late" in finding.seen
