@@ -2,7 +2,7 @@
 
     PYTHONPATH=. python -m tests.studies.switching_evidence [--seeds 20] [--half kept]
 
-Drives of `tests/terrain/switch_drives.py` over terrains 3 to 9 m wide, ahead alone and with
+Drives of `tests/terrain/switch/switch_drives.py` over terrains 3 to 9 m wide, ahead alone and with
 turns on the spot, reversals and returns; labels of the ground 0.95 m ahead every 0.15 m, of which
 0.9 are right. Settings may be chosen on the even seeds (`--half chosen`) alone. Printed: switches,
 false ones (to a terrain that is not within 0.5 m) for 100 m of wheel travel, those that no true
@@ -17,7 +17,7 @@ from tqdm import tqdm
 from odometry.geometry import se2
 from terrain.switch.place_labels import Footprint, PlaceLabel
 from terrain.switch.switch import Switch, SwitchConfig
-from tests.terrain.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
+from tests.terrain.switch.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
 
 WAYS = {"ahead": {"manoeuvres": (forward,)}, "spins and reversals": {}}
 LABELS = {

@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import RunFolderError
 from terrain.labelling.given_terrain import given_by_feel
 from tests.odometry.feel.feel_drives import drive, model_of_three
-from tests.terrain.test_feel_labels import joined
+from tests.terrain.switch.test_feel_labels import joined
 
 
 @pytest.fixture(scope="module")

@@ -7,8 +7,8 @@ import pytest
 from terrain.image_labels.details_watch import NEAR_M, DetailsWatch
 from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails
 from terrain.image_labels.terrain_details import change_of_details as change_from
-from tests.terrain.test_still_image import SIZE, down
-from tests.terrain.test_still_image import seen as shown
+from tests.terrain.image_labels.test_still_image import SIZE, down
+from tests.terrain.image_labels.test_still_image import seen as shown
 
 LENGTH, STEP_M = 14, 0.13
 WAY_M = STEP_M * np.arange(LENGTH)

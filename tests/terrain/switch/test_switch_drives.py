@@ -9,7 +9,7 @@ import pytest
 from odometry.geometry import se2
 from terrain.switch.place_labels import Footprint, PlaceLabel
 from terrain.switch.switch import Switch, SwitchConfig
-from tests.terrain.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
+from tests.terrain.switch.switch_drives import FOOTPRINT_M, STEP_S, forward, random_drive
 
 NEAR_M = 0.25
 BOTH_RULES = pytest.mark.parametrize("needed", [0, 2], ids=["evidence", "rows"])

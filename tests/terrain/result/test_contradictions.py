@@ -21,7 +21,7 @@ from terrain.result.contradictions_so_far import LASTS_S
 from terrain.result.new_terrain import contradiction_lines, new_name
 from terrain.results import write_results
 from tests.odometry.feel.feel_drives import drive, drives, model_of_three
-from tests.terrain.test_feel_labels import joined
+from tests.terrain.switch.test_feel_labels import joined
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from terrain.image_labels.carried_image import (
     places_of_squares,
     tiles,
 )
-from tests.terrain.test_still_image import SIZE, STEP, down, seen, terrain
+from tests.terrain.image_labels.test_still_image import SIZE, STEP, down, seen, terrain
 
 __all__ = ["terrain"]
 

@@ -10,7 +10,7 @@ from terrain.camera.camera import Camera
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
-from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
+from tests.terrain.sources.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 
 def test_every_image_has_a_sighting_and_the_terrain_after_it(watch):

@@ -19,11 +19,11 @@ UNIT = Rectangle(0.0, 1.0, 0.0, 1.0)
 def showing(vertices):
     """A stand-in for a camera that shows the given vertices (CELLS + 1, CELLS + 1) of UNIT."""
 
-    def in_image(points):
+    def shows_terrain(points):
         row, column = np.moveaxis(np.rint(points * CELLS).astype(int), -1, 0)
         return vertices[row, column]
 
-    return SimpleNamespace(ground_to_pixels=np.asarray, in_image=in_image)
+    return SimpleNamespace(ground_to_pixels=np.asarray, shows_terrain=shows_terrain)
 
 
 def cells_of(rectangle):

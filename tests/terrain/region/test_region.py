@@ -9,7 +9,7 @@ from odometry.errors import ConfigError
 from odometry.run import Robot
 from terrain.camera.camera import Camera
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
-from tests.terrain.regions import (
+from tests.terrain.region.regions import (
     AHEAD,
     ALL_ROUND,
     MATRIX,

@@ -16,7 +16,7 @@ from terrain.image_labels.details_watch import DetailsWatch
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
-from tests.terrain.watcher.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
+from tests.terrain.sources.watched import BRIGHT, DARK, ByBrightness, drive, estimate_at
 
 
 def cut_short(image):

@@ -53,7 +53,7 @@ def test_labels_follow_from_the_numbers_in_the_terrain_table(across_out, classif
 
 def test_the_threshold_of_the_readme(across_result, classifier, tmp_path, monkeypatch, capsys):
     """What terrain/README.md shows does run, and the share that it prints lies beyond."""
-    text = (Path(__file__).parents[2] / "terrain/README.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[3] / "terrain/README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     (code,) = [block for block in blocks if "rejection_distance_" in block]
     write_results(across_result, tmp_path / "results")

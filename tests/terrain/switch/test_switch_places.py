@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from terrain.switch.place_labels import DRIFT, Footprint
-from tests.terrain.straight_drives import (
+from tests.terrain.switch.straight_drives import (
     AHEAD_M,
     BOTH_RULES,
     FOOTPRINT,

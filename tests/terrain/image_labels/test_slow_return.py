@@ -7,8 +7,8 @@ import pytest
 from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.slow_return import SlowReturn
 from terrain.image_labels.terrain_details import TileDetails
-from tests.terrain.test_still_image import PX_M, down
-from tests.terrain.test_still_image import seen as shown
+from tests.terrain.image_labels.test_still_image import PX_M, down
+from tests.terrain.image_labels.test_still_image import seen as shown
 
 STEP_M = 0.5
 LOSS = -0.9

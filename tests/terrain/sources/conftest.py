@@ -11,7 +11,7 @@ from terrain.camera.camera import Camera
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
-from tests.terrain.watcher.watched import ByBrightness
+from tests.terrain.sources.watched import ByBrightness
 
 
 def encoded(image, number):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from terrain.classification.answer import Classification
 from terrain.image_labels.distance_track import DistanceTrack
 from terrain.image_labels.image_label import ImageLabel
-from tests.terrain.watcher.watched import DARK, ByBrightness, drive
+from tests.terrain.sources.watched import DARK, ByBrightness, drive
 
 LIMITS = (10.0, 8.0, 6.0, 5.0, 4.0)  # of 1, 2, 4, 8, 16 patches
 

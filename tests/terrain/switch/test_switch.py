@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
 from terrain.switch.switch import SwitchConfig
-from tests.terrain.straight_drives import (
+from tests.terrain.switch.straight_drives import (
     AHEAD_M,
     BOTH_RULES,
     changes,

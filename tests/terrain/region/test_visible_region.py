@@ -12,7 +12,7 @@ from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.region.footprint_parts import footprint_parts, visible_shares
 from terrain.region.region import NoRegion, Region, RegionConfig, predict_region
-from tests.terrain.regions import (
+from tests.terrain.region.regions import (
     AHEAD,
     MATRIX,
     MOUNT,

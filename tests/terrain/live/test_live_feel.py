@@ -22,8 +22,8 @@ from terrain.main_job import run_odometry
 from terrain.switch.switch import SwitchConfig
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 from tests.terrain.conftest import METRES_PER_PIXEL
-from tests.terrain.test_feel_labels import joined
-from tests.terrain.test_sources import table_of
+from tests.terrain.sources.test_sources import table_of
+from tests.terrain.switch.test_feel_labels import joined
 
 CAUSAL = Config(filter=IcrEkfConfig(causal=True))
 TOLERANCE = {"rtol": 1e-12, "atol": 1e-13}
