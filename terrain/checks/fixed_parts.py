@@ -17,7 +17,7 @@ from terrain.image_labels.carried_image import middles, places_at, tiles
 ROBOT_IN_IMAGES = "robot_in_images"
 APART_M = 0.5  # of travel between images: by then the terrain is another
 FEWEST, MOST = 12, 48  # images that are compared
-QUARTERS = 4  # spans of them that are looked at by themselves: dirt comes, and a drop goes
+SPANS = 4  # of them that are looked at by themselves, at most: dirt comes, and a drop goes
 TILE_PX = 8
 FINEST_PX, COARSEST_PX = 1.0, 4.0  # sizes of the details of a tile
 # Mean correlation of a tile in pairs of images: terrain has 0.2 at most, a part of the robot 0.7
@@ -31,7 +31,7 @@ BORDER, BY_CHANCE, LEAST_BORDER = 0.05, 1.2, 8
 # less, or 1.3 and more, where the robot sways by 3 cm
 SHARP, SWAYS = 0.1, 1.3
 LEAST_TILES, LEAST_FIXED = 4, 2  # of a part
-MOST_SHARE = 0.5  # of the terrain: more is no robot, but a camera that is frozen or covered
+MOST_SHARE = 0.4  # of the terrain: more is no robot, but a camera that is frozen or covered
 SIMPLIFIED_PX = 2.0  # by which an outline may be off, of images of `TerrainViews`
 
 
@@ -55,7 +55,7 @@ class FixedParts:
 
 
 def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | None:
-    """Look for parts of near terrain in the image that stay in all images, or in a quarter of them.
+    """Look for parts of near terrain in the image that stay in all images, or on a span of them.
 
     None where there are none, or too few images to say so.
     """
@@ -65,8 +65,8 @@ def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | N
     near = _near_terrain(camera, images.shape[1:])
     if not near.any():
         return None
-    spans = [images, *np.array_split(images, QUARTERS)]
-    found = np.any([_fixed(span, near) for span in spans if len(span) >= FEWEST], axis=0)
+    spans = [images, *np.array_split(images, min(SPANS, len(images) // FEWEST))]
+    found = np.any([_fixed(span, near) for span in spans], axis=0)
     share = float(found.ravel()[near].mean())
     if not 0 < share < MOST_SHARE:
         return None
@@ -100,7 +100,7 @@ def robot_in_images(parts: FixedParts | None) -> Iterator[Finding]:
 
 def _images(run: Run, views: TerrainViews) -> AnyArray:
     """Grey images (N, h, w) that are some travel apart, of one size."""
-    if run.images is None:
+    if run.images is None or not len(run.images):
         return np.empty((0, 0, 0))
     rows = _rows(run, run.images.stamps_s)
     found = (views.grey(str(run.images["file"][row])) for row in rows)

@@ -66,6 +66,7 @@ def found(monkeypatch):
         none = GroundSteps(rows[:0], np.empty((0, 2)), np.empty((0, 3)), len(rows))
         all_show = ImageStretches(replace(run, images=images), rows[:0], rows[:0, 0])
         monkeypatch.setattr(checked, "image_stretches", lambda *_: all_show)
+        monkeypatch.setattr(checked, "fixed_parts", lambda *_: None)
         monkeypatch.setattr(checked, "lost_details", lambda *_: ())
         monkeypatch.setattr(checked, "ground_steps", lambda *_: steps)
         monkeypatch.setattr(unrelated_images, "ground_steps", lambda *_: none)
