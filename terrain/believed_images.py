@@ -1,4 +1,4 @@
-"""Whether a run may take its terrain from its images, by what the check of the recording found."""
+"""What of its images a run may take its terrain from, by what the check of the recording found."""
 
 from dataclasses import replace
 
@@ -19,39 +19,34 @@ ELSEWHERE = frozenset(
 OF_STRETCHES = frozenset({"images_frozen", "images_blank", "images_lost_details"})
 
 
-def believed(options: RunOptions, report: CheckReport) -> tuple[RunOptions, str]:
-    """The options of a run, without vision where its images show other terrain.
+def believed(run: Run, options: RunOptions, report: CheckReport) -> tuple[Run, RunOptions, str]:
+    """A run and its options, with no more of its images than show the terrain ahead.
 
-    A published system (a preset) is what it is, and keeps its camera.
+    Without vision where images show other terrain, and beside the parts of them that show the robot
+    itself. A published system (a preset) is what it is, and keeps its camera.
 
     Parameters
     ----------
+    run : Run
     options : RunOptions
     report : CheckReport
         Of the run, its images checked as well.
 
     Returns
     -------
+    Run
     RunOptions
     str
         Why vision is left out, or "".
     """
+    if options.preset is not None or not options.reads_images:
+        return run, options, ""
     found = [finding for finding in report.findings if finding.name in ELSEWHERE]
-    if not found or not options.reads_images or options.preset is not None:
-        return options, ""
+    if not found:
+        return _beside_robot(run, report), options, ""
     source = None if options.source == "camera" else options.source
     said = f"vision is left out, as with --no-vision: {found[0].cause}"
-    return replace(options, vision=False, source=source), said
-
-
-def outside_of_robot(run: Run, report: CheckReport, options: RunOptions) -> Run:
-    """A run whose [camera] leaves out the parts of its images that show the robot itself.
-
-    A published system (a preset) is what it is.
-    """
-    if options.preset is not None:
-        return run
-    return _with_outlines(run, report)
+    return run, replace(options, vision=False, source=source), said
 
 
 def run_to_label(run: Run, report: CheckReport) -> Run:
@@ -79,10 +74,11 @@ def run_to_label(run: Run, report: CheckReport) -> Run:
             f"{run.folder}: no image is left: the camera was frozen or covered all the time"
         )
     kept_images = run.images.rows(np.flatnonzero(kept))
-    return _with_outlines(replace(run, images=kept_images), report)
+    return _beside_robot(replace(run, images=kept_images), report)
 
 
-def _with_outlines(run: Run, report: CheckReport) -> Run:
+def _beside_robot(run: Run, report: CheckReport) -> Run:
+    """The run, its [camera] with outlines of what shows the robot."""
     mends = [finding.mend for finding in report.findings if finding.name == ROBOT_IN_IMAGES]
     for mend in mends:
         run = mend(run) if mend is not None else run

@@ -12,17 +12,16 @@ from odometry.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.lasting_shade import lasting_shade
 from terrain.checks.terrain_views import FARTHEST, TerrainViews
-from terrain.image_labels.carried_image import middles, places_at, tiles
+from terrain.image_labels.carried_image import details_between, places_of_squares, tiles
 
 ROBOT_IN_IMAGES = "robot_in_images"
 APART_M = 0.5  # of travel between images: by then the terrain is another
 FEWEST, MOST = 12, 48  # images that are compared
 SPANS = 4  # of them that are looked at by themselves, at most: dirt comes, and a drop goes
 TILE_PX = 8
-FINEST_PX, COARSEST_PX = 1.0, 4.0  # sizes of the details of a tile
 # Mean correlation of a tile in pairs of images: terrain has 0.2 at most, a part of the robot 0.7
 FIXED = 0.5
-LEAST_GREY = 1.0  # of details: a tile with less shows noise, or blocks of JPEG
+LEAST_DETAIL = 1.0  # of details: a tile with less shows noise, or blocks of JPEG
 # Of the tiles round a smooth part, in the mean: terrain has 0, of N images 0.4 / N more or less,
 # and blocks of JPEG 0.03
 BORDER, BY_CHANCE, LEAST_BORDER = 0.05, 1.2, 8
@@ -57,12 +56,13 @@ class FixedParts:
 def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | None:
     """Look for parts of near terrain in the image that stay in all images, or on a span of them.
 
-    None where there are none, or too few images to say so.
+    None where there are none, where most of the terrain stays (a camera that is frozen), or where
+    there are too few images to say so.
     """
     images = _images(run, views)
     if len(images) < FEWEST:
         return None
-    near = _near_terrain(camera, images.shape[1:])
+    near = _near_terrain(camera, (images.shape[1], images.shape[2]))
     if not near.any():
         return None
     spans = [images, *np.array_split(images, min(SPANS, len(images) // FEWEST))]
@@ -107,19 +107,15 @@ def _images(run: Run, views: TerrainViews) -> AnyArray:
     return np.array([image for image in found if image is not None], dtype=np.float32)
 
 
-def _details(image: AnyArray) -> AnyArray:
-    fine, coarse = (cv2.GaussianBlur(image, (0, 0), size) for size in (FINEST_PX, COARSEST_PX))
-    return np.asarray(fine - coarse)
-
-
 def _rows(run: Run, stamps_s: FloatArray) -> IntArray:
     travel_m = np.interp(stamps_s, run.odometry.stamps_s, run.wheel_travel_m)
     rows = np.unique(np.searchsorted(travel_m, np.arange(travel_m[0], travel_m[-1], APART_M)))
     return rows[spread(len(rows), MOST)] if len(rows) else rows
 
 
-def _near_terrain(camera: Camera, shape: tuple[int, ...]) -> BoolArray:
-    places_m = places_at(camera, shape[1], middles(shape, TILE_PX))
+def _near_terrain(camera: Camera, shape: tuple[int, int]) -> BoolArray:
+    """Tiles (K,) of an image of a shape (h, w) that show terrain, not far off."""
+    places_m = places_of_squares(camera, shape, TILE_PX)
     near = np.linalg.norm(places_m, axis=1) < FARTHEST * camera.height_m
     return np.asarray(near & camera.shows_terrain(camera.ground_to_pixels(places_m)))
 
@@ -138,13 +134,13 @@ def _fixed(images: AnyArray, near: BoolArray) -> BoolArray:
     All of them where the camera is frozen.
     """
     shape = tuple(length // TILE_PX for length in images.shape[1:])
-    of_tiles = np.stack([tiles(_details(image), TILE_PX) for image in images])
+    of_tiles = np.stack([tiles(details_between(image), TILE_PX) for image in images])
     sizes = np.sqrt((of_tiles**2).mean(axis=2))
     alike = _alike(of_tiles)
-    fixed = near & (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_GREY)
+    fixed = near & (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_DETAIL)
     if fixed[near].mean() > MOST_SHARE:
         return np.ones(shape, dtype=np.bool_)
-    smooth = near & (np.quantile(sizes, 0.9, axis=0) < LEAST_GREY)
+    smooth = near & (np.quantile(sizes, 0.9, axis=0) < LEAST_DETAIL)
     shaded, deviation = lasting_shade(images, near, TILE_PX)
     fixed, smooth, shaded = (of.reshape(shape) for of in (fixed, smooth, shaded))
     alike, deviation = alike.reshape(shape), deviation.reshape(shape)

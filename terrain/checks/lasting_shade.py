@@ -4,10 +4,10 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from terrain.image_labels.carried_image import tiles
+from terrain.image_labels.terrain_details import LEAST_GREY
 
 DARKER = 0.35  # logarithm of light: terrain that the robot crosses has 0.33 at most
 SURELY = 10.0  # standard errors of the mean of the images: such terrain has 5
-LEAST_GREY = 5.0  # so that darkness does not count
 ROUNDS, FAR = 30, 2.0  # of the fit, and deviations from which a tile counts less
 
 

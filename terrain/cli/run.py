@@ -132,13 +132,13 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     ICRs when the robot gets there, and writes trajectories, ICRs, terrain, figures and one page.
     With --source the terrain comes from elsewhere: `labels` shows what true labels would give.
     Images that the check finds to be of another drive, in another order or upside down are left
-    out, as with --no-vision.
+    out, as with --no-vision, and so are parts of images that show the robot itself.
 
     \b
     Example:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
-    from terrain.believed_images import believed, outside_of_robot
+    from terrain.believed_images import believed
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import (
@@ -155,10 +155,9 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)
-    options, left_out = believed(options, checks_made()[-1])
+    recording, options, left_out = believed(recording, options, checks_made()[-1])
     if left_out:
         click.echo(f"Warning: {run_folder}: {left_out}", err=True)
-    recording = outside_of_robot(recording, checks_made()[-1], options)
     result = options.replay(recording, show_progress=True)
     if options.wants_images and result.watcher is None and recording.images is not None:
         click.echo("Note: the run has images, but there is no vision without --model", err=True)

@@ -9,6 +9,8 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera.camera import Camera
 
+# Details between these sizes [px] are compared: light, vignetting and blocks of JPEG do not count
+FINEST_PX, COARSEST_PX = 1.0, 4.0
 NODE_PX = 8  # between such pixels the way of terrain is interpolated, off by 0.1 px at the most
 
 
@@ -60,6 +62,13 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     for nowhere in (u, v):
         cv2.patchNaNs(nowhere, -1.0)
     return cv2.remap(image, u, v, cv2.INTER_LINEAR), np.asarray(known)
+
+
+def details_between(image: AnyArray) -> AnyArray:
+    """What a grey image (h, w) shows between FINEST_PX and COARSEST_PX, as float32."""
+    values = image.astype(np.float32)
+    fine, coarse = (cv2.GaussianBlur(values, (0, 0), size) for size in (FINEST_PX, COARSEST_PX))
+    return np.asarray(fine - coarse)
 
 
 def middles(shape: tuple[int, ...], size_px: int) -> FloatArray:

@@ -10,6 +10,7 @@ from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.image_labels.carried_image import (
     carried_back,
+    details_between,
     middles,
     pixels_after,
     places_of_squares,
@@ -18,8 +19,6 @@ from terrain.image_labels.carried_image import (
 from terrain.images import to_grey
 
 WIDTH_PX = 160  # of the images that are compared: noise and compression are averaged away
-# Details between these sizes [px] are compared: light, vignetting and blocks of JPEG do not count
-FINEST_PX, COARSEST_PX = 1.0, 4.0
 FLOW_PX = 4.0  # of the terrain, at least: by then the details are elsewhere
 TILE_PX = 16
 FEWEST_TILES = 16  # with such flow, of 70: eleven were alike by chance once, on soft soil
@@ -34,9 +33,7 @@ def details_of(image: AnyArray) -> FloatArray:
     """Details (h, WIDTH_PX) of an image (H, W) or (H, W, 3), reduced."""
     height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
     small = cv2.resize(to_grey(image), (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-    values = small.astype(np.float32)
-    fine, coarse = (cv2.GaussianBlur(values, (0, 0), size) for size in (FINEST_PX, COARSEST_PX))
-    return np.asarray(fine - coarse, dtype=np.float64)
+    return np.asarray(details_between(small), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,13 +1,14 @@
 """Parts of images that stay while the terrain moves, drawn here, and drives without any."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import CheckReport
-from terrain.believed_images import outside_of_robot, run_to_label
+from terrain.believed_images import believed, run_to_label
 from terrain.camera.camera import Camera
 from terrain.camera.robot_outlines import covered
 from terrain.checks.fixed_parts import FEWEST, fixed_parts, robot_in_images
@@ -203,7 +204,9 @@ def test_run_and_label_leave_the_parts_out_and_a_preset_does_not(drive, camera):
     report = CheckReport(drive.folder, findings)
     labelled = run_to_label(drive, report)
     assert len(labelled.settings["camera"]["robot_outlines"]) == 1
-    ran = outside_of_robot(drive, report, RunOptions(Config()))
+    options = RunOptions(Config(), model=Path("a.model"))
+    ran, _, _ = believed(drive, options, report)
     assert ran.settings == labelled.settings
-    assert outside_of_robot(drive, report, RunOptions(Config(), preset="chen2023")) is drive
-    assert outside_of_robot(drive, CheckReport(drive.folder, ()), RunOptions(Config())) is drive
+    assert believed(drive, replace(options, preset="chen2023"), report)[0] is drive
+    assert believed(drive, replace(options, vision=False), report)[0] is drive
+    assert believed(drive, options, CheckReport(drive.folder, ()))[0] is drive

@@ -16,6 +16,8 @@ from terrain.config import Config
 from terrain.errors import PatchError
 from terrain.run_options import RunOptions
 
+RUN = object()  # which is given back
+
 
 def found(name):
     return Finding(name, Level.WARNING, "seen", "Images are of another drive", "look")
@@ -32,7 +34,8 @@ def of_another_drive(monkeypatch):
 @pytest.mark.parametrize("source", [None, "camera"])
 def test_vision_is_left_out(name, source):
     options = RunOptions(Config(), model=Path("a.model"), source=source)
-    changed, said = believed(options, CheckReport(Path("a"), (found(name),)))
+    run, changed, said = believed(RUN, options, CheckReport(Path("a"), (found(name),)))
+    assert run is RUN
     assert changed.terrain_source == "none"
     assert said.endswith("Images are of another drive")
 
@@ -40,20 +43,21 @@ def test_vision_is_left_out(name, source):
 @pytest.mark.parametrize("name", ["images_late", "camera_height"])
 def test_what_moves_labels_by_a_little_is_no_reason(name):
     options = RunOptions(Config(), model=Path("a.model"))
-    assert believed(options, CheckReport(Path("a"), (found(name),))) == (options, "")
+    report = CheckReport(Path("a"), (found(name),))
+    assert believed(RUN, options, report) == (RUN, options, "")
 
 
 def test_a_published_system_keeps_its_camera():
     options = RunOptions(Config(), model=Path("a.model"), preset="chen2023")
     report = CheckReport(Path("a"), (found("images_reversed"),))
-    assert believed(options, report) == (options, "")
+    assert believed(RUN, options, report) == (RUN, options, "")
 
 
 @pytest.mark.parametrize("source", ["labels", "feel"])
 def test_other_sources_stay(source):
     options = RunOptions(Config(), source=source, feel=Path("feel"))
     report = CheckReport(Path("a"), (found("images_unrelated"),))
-    assert believed(options, report) == (options, "")
+    assert believed(RUN, options, report) == (RUN, options, "")
 
 
 @pytest.mark.parametrize("name", sorted(ELSEWHERE))
