@@ -70,31 +70,33 @@ def gain_errors(
 
 
 def gain_sums(
-    said: FloatArray, errors: FloatArray, stamps_s: FloatArray, window_s: float
+    predicted: FloatArray, errors: FloatArray, stamps_s: FloatArray, window_s: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """By how much (N,) the gain is off in a window up to each stamp, information, and turning time.
 
     Parameters
     ----------
-    said, errors : (N,)
+    predicted, errors : (N,)
         Predicted yaw rate, and measured less predicted, NaN where it does not count [rad/s].
     stamps_s : (N,)
     window_s : float
     """
-    turns = np.isfinite(errors) & (np.abs(said) > LEAST_RAD_S)
+    turns = np.isfinite(errors) & (np.abs(predicted) > LEAST_RAD_S)
     lasts_s = np.where(turns, np.diff(stamps_s, prepend=stamps_s[0]), 0.0)
     clipped = np.clip(np.where(turns, errors, 0.0), -CLIP_RAD_S, CLIP_RAD_S)
-    columns = lasts_s[:, None] * np.column_stack([np.ones(len(said)), said**2, said * clipped])
+    columns = lasts_s[:, None] * np.column_stack(
+        [np.ones(len(predicted)), predicted**2, predicted * clipped]
+    )
     turned_s, information, product = windowed(columns, stamps_s, window_s).T
     some = np.where(information > 1e-6, information, np.nan)
     return product / some, some, turned_s
 
 
 def _windows(
-    stamps_s: FloatArray, said: FloatArray, errors: FloatArray
+    stamps_s: FloatArray, predicted: FloatArray, errors: FloatArray
 ) -> Iterator[tuple[float, float]]:
     """Error of the gain and its information in windows that overlap by half."""
-    off, information, _ = gain_sums(said, errors, stamps_s, WINDOW_S)
+    off, information, _ = gain_sums(predicted, errors, stamps_s, WINDOW_S)
     ends_s = np.arange(stamps_s[0] + WINDOW_S, stamps_s[-1], WINDOW_S / 2)
     rows = np.searchsorted(stamps_s, ends_s)
     known = rows[np.isfinite(off[rows])]
@@ -114,8 +116,8 @@ def _held_out(
         for part in [one.driving] if len(measured) > 1 else _quarters(one):
             rest = np.sum(every, axis=0) - _normal(table, one, part)
             prior = np.eye(8) * variance / USUAL**2
-            said = table @ np.linalg.solve(rest[:, :8] + prior, rest[:, 8] + prior @ first)
-            yield one.stamps_s, said, np.where(part, one.yaw_rates - said, np.nan)
+            predicted = table @ np.linalg.solve(rest[:, :8] + prior, rest[:, 8] + prior @ first)
+            yield one.stamps_s, predicted, np.where(part, one.yaw_rates - predicted, np.nan)
 
 
 def _normal(table: FloatArray, one: YawRateStretch, rows: BoolArray) -> FloatArray:
