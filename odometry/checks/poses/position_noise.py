@@ -24,7 +24,7 @@ def noisy_positions(
             "noisy_positions",
             Level.NOTE,
             f"positions scatter by {sigma:.2f} m from one to the next",
-            "Positions are noisy (single-point GNSS)",
+            "Positions are noisy (single-point GNSS), or of two places in turn (two antennas)",
             f"State it: --position-sigma {sigma:.2f} and a longer --horizon (identify, compare); "
             "`run` and `batch` take it from the recording where [filter] position_sigma_m is less",
         )

@@ -26,7 +26,9 @@ def one_motion(evidence: Evidence) -> Iterator[Finding]:
     m = evidence.uniform
     way_m = float(evidence.run.wheel_travel_m[-1])
     if way_m < LEAST_TRAVEL_M:
-        yield _finding(f"the treads travel {way_m:.2g} m in all", "The robot hardly drives")
+        yield _finding(
+            f"the treads travel {way_m:.2g} m in all", "By the treads the robot hardly drives"
+        )
         return
     travel = np.stack([m.left_m, m.right_m], axis=-1)
     moving = np.abs(travel).max(axis=1) > MOVING * evidence.fastest_m_s * m.lasts_s
@@ -43,7 +45,9 @@ def one_motion(evidence: Evidence) -> Iterator[Finding]:
         motion = "only goes straight on"
     elif turn > 1 / ONE_WAY:
         motion = "only spins on the spot"
-    yield _finding(f"v_left is {ratio:.2g} times v_right all the time", f"The robot {motion}")
+    yield _finding(
+        f"v_left is {ratio:.2g} times v_right all the time", f"By the treads the robot {motion}"
+    )
 
 
 def _finding(seen: str, cause: str) -> Finding:

@@ -28,7 +28,10 @@ def noted(run):
 @pytest.mark.parametrize("motion", ALONE)
 def test_a_drive_of_one_motion_is_noted_and_identify_refuses_it(motion):
     (found,) = noted(ALONE[motion])
-    assert (found.level, found.cause.startswith(f"The robot {motion}: ")) == (Level.NOTE, True)
+    assert (found.level, found.cause.startswith(f"By the treads the robot {motion}: ")) == (
+        Level.NOTE,
+        True,
+    )
     with pytest.raises(OdometryError) as refusal:
         identify([ALONE[motion]], "icr", show_progress=False).require_determined()
     assert isinstance(refusal.value, IdentificationError) or "no window" in str(refusal.value)
