@@ -79,8 +79,7 @@ def run_odometry(
         False reads no image: without another `source` one terrain is in force for the whole run.
     terrain : str, optional
         In force until the first switch; by default the run's own where `parameters` has it, else
-        the first of `parameters`, else the run's own. By modes it is `unknown` where neither names
-        it.
+        `unknown`; without any source of terrain the first of `parameters`, else the run's own.
     config : Config, optional
     source : {"camera", "labels", "modes", "feel", "none"} or TerrainSource, optional
         The source of the terrain: the images, classified by `model`; the run's own column
@@ -172,7 +171,6 @@ def run_odometry(
         second,
         BOTH if name == "camera" and feel is not None else name,
         differing,
-        terrain,
     )
 
 

@@ -70,12 +70,14 @@ def mark_changes(axes: Axes, stretches: Sequence[Stretch], *, names: bool = Fals
     stretches : sequence of Stretch
         Of the terrain in force.
     names : bool
-        Write the name of each terrain above the axes.
+        Write the name of each terrain above the axes, where its stretch has room for it; the axes
+        have their limits.
     """
     for stretch in stretches[1:]:
         axes.axvline(stretch.start_s, color="#777777", linewidth=0.9, linestyle="dotted", zorder=1)
+    axes.get_xlim()  # brings the transform up to date
     for stretch in stretches if names else ():
-        axes.annotate(
+        name = axes.annotate(
             stretch.terrain,
             (stretch.start_s, 1.0),
             (2.0, 3.0),
@@ -86,6 +88,9 @@ def mark_changes(axes: Axes, stretches: Sequence[Stretch], *, names: bool = Fals
             annotation_clip=False,
             parse_math=False,
         )
+        ends_px = axes.transData.transform((stretch.end_s, 0.0))[0]
+        if stretch is not stretches[-1] and name.get_window_extent().x1 > ends_px:
+            name.remove()
 
 
 def plot_position_errors(

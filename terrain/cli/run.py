@@ -48,7 +48,11 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         type=click.Choice(PRESETS),
         help="A published system whole; what contradicts it is an error.",
     )
-    @click.option("--terrain", metavar="NAME", help="In force until the first switch.")
+    @click.option(
+        "--terrain",
+        metavar="NAME",
+        help="In force until the first switch; by default that of [run] in run.toml, else unknown.",
+    )
     @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
     @click.option(
         "--per-tread", is_flag=True, help="Classify the terrain under each tread by itself."

@@ -42,8 +42,8 @@ class LiveOdometry:
     parameters : ParameterSet or path, optional
         Without effects: those are known along a whole run only.
     terrain : str, optional
-        In force until the first switch; by default the first of `parameters`, or with `feel` as
-        the source "unknown".
+        In force until the first switch; by default "unknown", or the first of `parameters` where
+        neither images nor feel will name one.
     config : Config, optional
         `[filter] causal` counts as set.
     source : TerrainSource, optional
@@ -107,7 +107,7 @@ class LiveOdometry:
         if feel is not None and source is not None:
             raise ConfigError("feel was given and a source of your own; expected one of them")
         live = None if feel is None else live_feel(feel, robot, imu_rad)
-        if live is not None and model is None and terrain is None:
+        if terrain is None and (live is not None or model is not None):
             initial = UNKNOWN  # a wrong start would mislead the gyroscope's bias
         self._felt: LiveFelt | None = None
         if source is None:

@@ -30,7 +30,7 @@ def run_notes(result: RunResult) -> list[str]:
     classifier = None if result.watcher is None else result.watcher.classifier
     return [
         *name_notes(result.initial_terrain, classifier, result.parameters),
-        *([] if result.watcher is None else _images(result, result.watcher)),
+        *([] if result.watcher is None else _images(result.watcher)),
         *_refused(result),
         *sentences(sets_against_poses(result)),
     ]
@@ -46,7 +46,7 @@ def event_lines(result: RunResult) -> list[str]:
     return lines
 
 
-def _images(result: RunResult, watcher: TerrainWatcher) -> list[str]:
+def _images(watcher: TerrainWatcher) -> list[str]:
     """Images that are unlike those of training, show no terrain, or have no name."""
     found = []
     if isinstance(watcher.classifier, OwnStatisticsClassifier):
@@ -62,8 +62,6 @@ def _images(result: RunResult, watcher: TerrainWatcher) -> list[str]:
     if empty is not None:
         found.append(empty)
     found += _blind(watcher.image_labels) or _few_names(watcher.image_labels)
-    if result.named_start is None and len(result.parameters.terrains) > 1:
-        found += _start(result.initial_terrain, result.run.terrain, watcher.image_labels)
     return found
 
 
@@ -77,19 +75,6 @@ def _refused(result: RunResult) -> list[str]:
         f"the filter refused {refused} of {poses} poses, because they lie far from "
         "where it expected them. The units of pose.csv or odometry.csv may be wrong, the poses "
         "may jump, or the noise settings ([filter] of --config) may be too small"
-    ]
-
-
-def _start(assumed: str, of_run: str | None, image_labels: Sequence[ImageLabel]) -> list[str]:
-    """Say that the run began on a terrain that was not named and differs from the first label."""
-    labels = (str(image_label.label) for image_label in image_labels)
-    seen = next((label for label in labels if label not in ("", UNKNOWN)), assumed)
-    if assumed in (seen, of_run):
-        return []
-    return [
-        f"no terrain was named for the start, so {assumed!r}, the first of the parameter set, was "
-        f"in force, but the first label is {seen!r}; a wrong start misleads the gyroscope's bias. "
-        f"Try --terrain {seen}"
     ]
 
 

@@ -69,8 +69,6 @@ class RunResult:
         Source of the terrain: "camera", "labels", "modes", "feel", "none", or the user's own.
     contradictions : tuple of Contradiction
         Where camera, feel and motion differ for long, or no source knows the terrain.
-    named_start : str or None
-        The terrain that the caller named for the start; None: it was chosen.
 
     Examples
     --------
@@ -95,7 +93,6 @@ class RunResult:
     second: SecondReplay | None = None
     source: str = "none"
     contradictions: tuple[Contradiction, ...] = ()
-    named_start: str | None = None
 
     @property
     def judged(self) -> dict[str, EvaluatedTrajectory]:

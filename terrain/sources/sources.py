@@ -99,9 +99,9 @@ def terrain_source(
         one terrain for the whole run.
     config : Config
     initial : str
-        In force until the first switch; of labels only where `terrain` says so too, and of modes
-        and feel where `terrain` or the run does: else a wrong start would mislead the gyroscope's
-        bias, and the terrain is `unknown` until motion or feel supports one.
+        In force until the first switch; of labels only where `terrain` says so too, of images,
+        modes and feel where `terrain` or the run does: else a wrong start would mislead the
+        gyroscope's bias, and the terrain is `unknown` until one of them supports one.
     terrain : str, optional
         What the user named.
     model : Classifier, optional
@@ -117,11 +117,11 @@ def terrain_source(
     """
     if name == "labels":
         return labelled_terrain(run, terrain)
+    first = initial if terrain is not None or run.terrain == initial else UNKNOWN
     if name == "camera":
         if model is None:
             raise ConfigError("the terrain source 'camera' needs a model (made by `train`)")
-        return _watcher(run, model, initial, config, feel)
-    first = initial if terrain is not None or run.terrain == initial else UNKNOWN
+        return _watcher(run, model, first, config, feel)
     if name == "feel":
         if feel is None:
             raise ConfigError("the terrain source 'feel' needs a model (`identify-feel`)")

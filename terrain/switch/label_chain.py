@@ -33,6 +33,11 @@ def given_to(
     return given
 
 
+def of_any_place(names: int) -> FloatArray:
+    """Probabilities (names + 1,) of the terrain at a place of which nothing is known."""
+    return np.append(np.full(names, (1 - UNNAMED) / names), UNNAMED)
+
+
 def smoothed(
     given: FloatArray,
     steps_m: FloatArray,
@@ -89,7 +94,7 @@ def smoothed(
     evidence = seen if by_feel is None else np.where(by_feel[:, None, None], terrain_evidence, seen)
     own = (1 - wrong) * np.eye(count) + wrong / count
     appearances = np.vstack([own, np.full(count, 1 / count)])
-    drawn = np.append(np.full(count, (1 - UNNAMED) / count), UNNAMED)[:, None]
+    drawn = of_any_place(count)[:, None]
     ahead, after = _both_ways(
         np.broadcast_to(evidence, (len(evidence), *appearances.shape)),
         prior[:, None] / drawn,

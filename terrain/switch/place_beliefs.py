@@ -8,10 +8,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.run import UNKNOWN
-from terrain.switch.label_chain import given_to, smoothed
+from terrain.switch.label_chain import given_to, of_any_place, smoothed
 from terrain.switch.place_labels import PlaceLabel, along_way
 
-LEAST = 2 / 3  # a terrain less probable is not known; one label of a place does not reach it
+# a terrain less probable is not known; one label does not reach it against what was there before
+LEAST = 2 / 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +94,7 @@ def by_evidence(
     ----------
     place_labels : sequence of PlaceLabel
     before : str
-        The terrain under the robot when the first of these was labelled.
+        The terrain under the robot when the first of these was labelled; `unknown` is any.
     accuracy, change_m, alike_m : float
         See `label_chain`.
     """
@@ -101,6 +102,7 @@ def by_evidence(
     names = _names(place_labels, before)
     if not labelled:
         return PlaceBeliefs.of((), names, np.empty((0, len(names))))
+    count = len(names) - 1
     places = np.array([place_label.place for place_label in labelled])
     order = along_way(places, alike_m)
     labelled = tuple(labelled[place] for place in order)
@@ -113,7 +115,7 @@ def by_evidence(
     beliefs = smoothed(
         given,
         np.concatenate([[labelled[0].distance_ahead_m], between_m]),
-        np.eye(len(names))[names.index(before)],
+        of_any_place(count) if before == UNKNOWN else np.eye(count + 1)[names.index(before)],
         accuracy=accuracy,
         change_m=change_m,
         alike_m=alike_m,

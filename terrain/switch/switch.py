@@ -34,8 +34,8 @@ class SwitchConfig:
         A robot astride an edge has shares of both terrains; otherwise the terrain changes in one
         step (Chen 2023) where most of the footprint is over.
     unknown_m : float
-        After so much wheel travel on which the labels did not support the terrain in force it
-        counts as unknown [m]; used where labels are accumulated.
+        After so much wheel travel on which the labels did not support the terrain in force, that
+        of the start included, it counts as unknown [m]; used where labels are accumulated.
     label_accuracy : float
         Probability that the label of a region is right; used where labels are accumulated.
     change_m : float
@@ -97,6 +97,7 @@ class Switch:
     Attributes
     ----------
     in_force : str
+        `unknown` at a start of which nothing is known.
     footprint : Footprint
     config : SwitchConfig
     before : str
@@ -153,20 +154,15 @@ class Switch:
 
     def without_labels(self) -> "Switch":
         """The switch after a stretch of unknown motion: no labelled place is known any more."""
-        return replace(self, before=self.in_force, place_labels=(), place_beliefs=None)
+        return replace(self, before=UNKNOWN, place_labels=(), place_beliefs=None)
 
     def at(self, stamp_s: float, pose: FloatArray, travel_m: float) -> "Switch":
         """The switch with the robot at a pose (3,) of the odometry frame."""
         if self.place_beliefs is None or not self.place_beliefs.place_labels:
-            if not self.place_labels:
-                supported_m, unsupported_m = travel_m - self.unsupported_m, self.unsupported_m
-            else:  # all of them unknown: nothing supports the terrain of the start either
-                supported_m, unsupported_m = self.supported_m, travel_m - self.supported_m
             return replace(
                 self,
                 shares={self.in_force: 1.0},
-                supported_m=supported_m,
-                unsupported_m=unsupported_m,
+                unsupported_m=travel_m - self.supported_m,
                 event=None,
             )
         points = se2.transform(pose, self.footprint.middle_and_points)

@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from odometry.errors import ParameterError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
 from odometry.run import Run
@@ -112,26 +111,6 @@ def test_without_a_model_one_terrain_stays(across_run):
     result = run_odometry(across_run)
     assert set(result.replay.terrains) == {result.initial_terrain}
     assert result.watcher is None
-
-
-def test_the_first_terrain_is_the_one_named_else_the_sets_first_else_the_runs(
-    tmp_path, world, curvy_run
-):
-    folder = world.drive_curves(tmp_path / "run")
-    world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "sand"})
-    assert run_odometry(folder, parameters=SET, terrain="mud").initial_terrain == "mud"
-    assert run_odometry(folder, parameters=SET).initial_terrain == "boards"
-    assert run_odometry(folder).initial_terrain == "sand"
-    assert run_odometry(curvy_run).initial_terrain == "ground"
-
-
-def test_the_reserved_name_is_never_in_force(tmp_path, world, curvy_run):
-    """No parameter set may hold it, so what is learned there could not be handed on."""
-    with pytest.raises(ParameterError, match="'unknown' is reserved"):
-        run_odometry(curvy_run, terrain="unknown")
-    folder = world.drive_curves(tmp_path / "run")
-    world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "unknown"})
-    assert run_odometry(folder).initial_terrain == "ground"
 
 
 def test_a_run_and_a_model_may_be_given_as_objects_or_paths(astride_run, model_file, classifier):

@@ -56,12 +56,19 @@ def test_a_constant_icr_can_be_drawn(axes):
 
 def test_changes_are_marked_where_another_terrain_begins(axes):
     stretches = (Stretch("ice", 0, 4), Stretch("snow $^", 4, 7), Stretch("ice", 7, 9))
+    axes.set_xlim(0, 9)
     mark_changes(axes, stretches)
     assert [line.get_xdata()[0] for line in axes.lines] == [4, 7]
     assert not axes.texts
     mark_changes(axes, stretches, names=True)
     assert [text.get_text() for text in axes.texts] == ["ice", "snow $^", "ice"]
     axes.figure.canvas.draw()
+
+
+def test_a_name_without_room_does_not_lie_over_the_next_one(axes):
+    axes.set_xlim(0, 90)
+    mark_changes(axes, (Stretch("ice", 0, 1), Stretch("snow", 1, 90)), names=True)
+    assert [text.get_text() for text in axes.texts] == ["snow"]
 
 
 def test_position_errors_are_drawn_from_zero_up(axes):

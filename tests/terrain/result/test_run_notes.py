@@ -26,7 +26,6 @@ def result(initial="gravel", tables=("gravel",), classes=None, *, refused=0, eve
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
         run=SimpleNamespace(pose=None, terrain=None, began_s=1000.0),
-        named_start=None,
         replay=SimpleNamespace(
             innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
             accepted=np.array([False] * 5 + [True] * 10 + [False] * refused),
@@ -84,21 +83,11 @@ def test_names_that_differ_by_capitals_or_signs_alone_are_named_together():
     assert model.endswith("'wet_grass' there is 'WET-GRASS' here: give both one name")
 
 
-def starting(labels, *, initial="grass", of_run=None, named=None):
+def starting(labels):
     """A run whose set begins with grass, and the first labels of its images."""
-    of = result(initial, ("grass", "gravel"), classes=["grass", "gravel"])
-    of.run.terrain, of.named_start = of_run, named
+    of = result("grass", ("grass", "gravel"), classes=["grass", "gravel"])
     of.watcher.image_labels = [SimpleNamespace(label=label, reason="") for label in labels]
     return of
-
-
-def test_a_start_that_nobody_named_and_no_image_shows_is_doubted():
-    (hint,) = run_notes(starting(["", "unknown", "gravel", "grass"]))
-    assert "--terrain gravel" in hint
-    assert "'grass'" in hint
-    assert run_notes(starting(["grass", "gravel"])) == []
-    assert run_notes(starting(["gravel"], named="grass")) == []
-    assert run_notes(starting(["gravel"], of_run="grass")) == []
 
 
 def test_many_refused_poses_are_named():
@@ -135,11 +124,6 @@ def test_treads_on_two_terrains_are_no_matter_of_the_pitch():
     assert "pitch" not in hint
     (hint,) = run_notes(seen_labels(*edge, still, still))
     assert "pitch" in hint
-
-
-def test_the_label_of_the_start_is_a_plain_name():
-    (hint,) = run_notes(starting([np.str_("gravel")]))
-    assert "the first label is 'gravel'" in hint
 
 
 def test_what_the_filter_noticed_is_said_the_first_ten_in_full():

@@ -44,12 +44,12 @@ def test_the_place_counts_along_the_driven_path(watch, corrected):
     assert event.waited_m == pytest.approx(0.5 * (2.4 - 1.4))
 
 
-@pytest.mark.parametrize(("gap_ends_s", "terrain"), [(0.0, "snow"), (2.0, "mud")])
+@pytest.mark.parametrize(("gap_ends_s", "terrain"), [(0.0, "snow"), (3.0, "mud")])
 def test_over_a_gap_of_odometry_places_are_forgotten(watch, gap_ends_s, terrain):
-    """Images show snow before the gap and after it; one label alone brings nothing into force."""
-    watched = watch([DARK, BRIGHT, BRIGHT])
+    """Images show snow before the gap and mud after it."""
+    watched = watch([BRIGHT, BRIGHT, BRIGHT, DARK])
     frames = list(watched.run.frames())
-    frames = [dataclasses.replace(f, in_gap=1.4 < f.stamp_s <= gap_ends_s) for f in frames]
+    frames = [dataclasses.replace(f, in_gap=2.4 < f.stamp_s <= gap_ends_s) for f in frames]
     estimates = [estimate_at(frame) for frame in frames]
     pairs = zip(frames, estimates[:1] + estimates, strict=False)
     footings = [watched.watcher.terrain(frame, estimate) for frame, estimate in pairs]

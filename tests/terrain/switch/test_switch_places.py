@@ -135,6 +135,13 @@ def test_a_robot_that_went_astray_knows_no_place(rule):
     assert without_labels.at(6.0, np.array([3.1, 0.0, 0.0]), 3.1).in_force == "gravel"
 
 
+def test_after_unknown_motion_the_terrain_of_before_is_no_evidence():
+    label = seen_at(0.0, "gravel", probabilities={"grass": 0.5, "gravel": 0.5})
+    beliefs = start("grass").without_labels().add_label(label).place_beliefs
+    grass, gravel = (beliefs.probability(beliefs.beliefs[0], n) for n in ("grass", "gravel"))
+    assert grass == pytest.approx(gravel, abs=1e-12)
+
+
 def test_of_places_that_are_forgotten_together_the_last_one_counts():
     """Grass, then gravel, and no label until both are too far behind."""
     switch = start("sand")
