@@ -28,7 +28,7 @@ Table = tuple[float, FloatArray, BoolArray]
 
 @dataclass(frozen=True)
 class Shown:
-    """Patches to judge: features (n, F), differences of looks (n, 10), true codes and groups (n,).
+    """Patches to judge: features (n, F), differences of looks (n, 11), true codes and groups (n,).
 
     The true code of things, and of terrain that is not known, is -1.
     """

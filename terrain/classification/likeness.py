@@ -27,6 +27,7 @@ FEWEST_IMAGES = 5
 # of models without limits of their own; chosen on ground/, pavements/ and frames of other cameras
 UNLIKE_RANK, UNLIKE_RANK_IN_CLASS = 0.75, 0.7
 UNLIKE_EXPOSURE = 0.4  # from one half
+GREY = 0.01  # of white, beside a mean of grey: black has no logarithm
 MOST_WORDS = 3
 WORTH_NAMING = 0.5  # deviations within a terrain
 
@@ -47,6 +48,8 @@ class Likeness:
     exposure : float
         Mean share of the 30 training patches of the most similar texture that are darker: 0.5
         where the light is that of training, 1 where every image is brighter.
+    light : float
+        Grey over that of these patches, geometric mean: 0.5 where the images are half as bright.
     beyond : float or None
         How far the images are from training over what runs of training photographs are: unlike
         above 1, see `RunLimits`. Fewer than five images are compared with one photograph. None
@@ -60,6 +63,7 @@ class Likeness:
     how: tuple[str, ...]
     exposure: float = 0.5
     beyond: float | None = None
+    light: float = 1.0
 
     @property
     def is_unlike(self) -> bool | None:
@@ -142,7 +146,7 @@ class TrainingLook:
         return self.summary(looks, self.differences(looks) if len(looks) else looks, images)
 
     def displacement(self, differences: FloatArray) -> float:
-        """How far an image lies from the most similar training looks, by its differences (m, 10).
+        """How far an image lies from the most similar training looks, by its differences (m, 11).
 
         Above 1 it is farther than most photographs held out.
 
@@ -157,16 +161,19 @@ class TrainingLook:
         return float(beyond[0])
 
     def differences(self, looks: FloatArray, left_out: AnyArray | None = None) -> FloatArray:
-        """How each of looks (m, 7) differs from the training patches, (m, 10): see `RunLimits`."""
+        """How each of looks (m, 7) differs from the training patches, (m, 11): see `RunLimits`."""
         distances, nearest = self._nearest(looks, left_out)
         nearer = self.distances < distances[:, None]
         own = self.codes == self.codes[nearest][:, None]
         in_terrain = (nearer & own).sum(axis=1) / own.sum(axis=1)
         scaled = looks[:, : len(self.spread)] / self.spread
         similar = self._scaled[self._similar(scaled, slice(None), left_out)].mean(axis=1)
-        darker = self.looks[self._similar(scaled, TEXTURE, left_out), 0] < looks[:, :1]
-        exposures = darker.mean(axis=1) - 0.5
-        return np.column_stack([nearer.mean(axis=1), in_terrain, exposures, scaled - similar])
+        of_texture = self.looks[self._similar(scaled, TEXTURE, left_out), 0]
+        exposures = (of_texture < looks[:, :1]).mean(axis=1) - 0.5
+        light = np.log(looks[:, 0] + GREY) - np.log(of_texture + GREY).mean(axis=1)
+        return np.column_stack(
+            [nearer.mean(axis=1), in_terrain, exposures, light, scaled - similar]
+        )
 
     def summary(
         self, looks: FloatArray, differences: FloatArray, images: int | None = None
@@ -175,14 +182,15 @@ class TrainingLook:
         images = len(looks) if images is None else images
         if not images:
             return Likeness(0, float("nan"), float("nan"), ())
-        rank, in_class, exposure = differences.mean(axis=0)[:3].tolist()
+        rank, in_class, exposure, light = differences.mean(axis=0)[:4].tolist()
         beyond = None
         if self.limits is not None and images < FEWEST_IMAGES:
             of_one = self.limits.beyond_one(differences)
             beyond = None if of_one is None else float(of_one.max())
         elif self.limits is not None:
             beyond = self.limits.beyond(looks / self.spread, differences)
-        return Likeness(images, rank, in_class, self.how(looks), exposure + 0.5, beyond)
+        how = self.how(looks)
+        return Likeness(images, rank, in_class, how, exposure + 0.5, beyond, float(np.exp(light)))
 
     def _similar(self, scaled: FloatArray, numbers: slice, left_out: AnyArray | None) -> IntArray:
         """Rows (m, 30) of the most similar patches by some numbers of scaled looks (m, 7)."""

@@ -25,10 +25,11 @@ LEAST_VARIANCE = 1e-3  # of the mean variance, so that a number that never varie
 class RunLimits:
     """What runs of three training photographs of one terrain differ from the others.
 
-    The difference of an image is ten numbers, of which the first is not used here: the shares of
-    training patches, and of those of the nearest terrain, that are nearer to other photographs
-    than it is; its exposure, the share that is darker of the training patches of the most similar
-    texture, less one half; and its displacement, its look in deviations within a terrain less the
+    The difference of an image is eleven numbers, of which the first and the fourth are not used
+    here: the shares of training patches, and of those of the nearest terrain, that are nearer to
+    other photographs than it is; its exposure, the share that is darker of the training patches of
+    the most similar texture, less one half; the logarithm of its grey over theirs; and its
+    displacement, its look in deviations within a terrain less the
     mean of the most similar training looks. The last two vary around zero for images of the
     camera of training; a change of camera, focus or light moves all images in one direction.
 
@@ -58,7 +59,7 @@ class RunLimits:
     def of(
         cls, looks: FloatArray, differences: FloatArray, codes: IntArray, groups: AnyArray
     ) -> Self:
-        """Of training patches: scaled looks (n, 7), differences (n, 10), terrains, photographs.
+        """Of training patches: scaled looks (n, 7), differences (n, 11), terrains, photographs.
 
         Differences are from the patches of other photographs.
         """
@@ -66,7 +67,7 @@ class RunLimits:
         terrains = np.array([codes[rows[0]] for rows in photos])
         weights = 1.0 / np.bincount(terrains)[terrains]
         weights /= weights.sum()
-        means = np.array([differences[rows, 3:].mean(axis=0) for rows in photos])
+        means = np.array([differences[rows, 4:].mean(axis=0) for rows in photos])
         places = np.array([looks[rows].mean(axis=0) for rows in photos])
         within = weights @ np.array([looks[rows].var(axis=0).sum() for rows in photos])
         between = weights @ ((places - weights @ places) ** 2).sum(axis=1)
@@ -91,8 +92,8 @@ class RunLimits:
         return displacement, exposure * varied, in_terrain * varied
 
     def of_one(self, differences: FloatArray) -> tuple[float, float, float]:
-        """The same of patches of one photograph, by their differences (m, 10)."""
-        _, in_terrain, exposure, *displacement = differences.mean(axis=0)
+        """The same of patches of one photograph, by their differences (m, 11)."""
+        _, in_terrain, exposure, _, *displacement = differences.mean(axis=0)
         mean = np.array(displacement) - self.middle
         away = float(np.sqrt(mean @ self.precision @ mean))
         return away, float(abs(exposure)), float(max(in_terrain - 0.5, 0.0))

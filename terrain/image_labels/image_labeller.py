@@ -15,6 +15,7 @@ from terrain.camera.camera import Camera
 from terrain.classification.likeness import Likeness, TrainingLook
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained import Classifier
+from terrain.classification.training_light import unless_by_light
 from terrain.errors import CameraError, ImageError
 from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.image_label import ImageLabel, answered
@@ -154,6 +155,7 @@ class ImageLabeller:
         self._has_answered = True
         likeness = self.seen.likeness
         answers = [answer.unless_doubtful(likeness) for answer in answers]
+        answers = unless_by_light(self.classifier, views, answers, likeness)
         return answered(frame.stamp_s, name, region, answers)
 
     def _name(self, image: Path | ByteImage) -> str:

@@ -9,6 +9,7 @@ from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.own_statistics import OwnStatisticsClassifier
+from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
 from terrain.result.evaluation_notes import event_line
 from terrain.result.run_result import RunResult
@@ -53,7 +54,7 @@ def _images(watcher: TerrainWatcher) -> list[str]:
         found.append(watcher.classifier.described)
     likeness = watcher.seen.likeness
     if likeness is not None and likeness.note is not None:
-        doubtful = {DOUBTFUL, IMPROBABLE, TOO_UNLIKE}
+        doubtful = {BY_LIGHT, DOUBTFUL, IMPROBABLE, TOO_UNLIKE}
         doubted = sum(label.reason in doubtful for label in watcher.image_labels)
         learned = getattr(watcher.classifier, "confidence_", None) is not None
         what = f"Names that are not surely enough right are unknown ({doubted} images)"

@@ -48,7 +48,7 @@ class SwitchConfig:
     labels_in_row: int = 0
     on_arrival: bool = True
     by_shares: bool = True
-    unknown_m: float = 3.0
+    unknown_m: float = 2.0
     label_accuracy: float = 0.9
     change_m: float = 10.0
     alike_m: float = 0.2

@@ -203,6 +203,15 @@ def test_another_exposure_is_noticed_among_textures_alike(training, power):
     assert f"{100 * exposure:.0f} % of those of similar texture are darker" in only.note
 
 
+@pytest.mark.parametrize("light", [0.25, 0.5, 1.3])
+def test_the_light_is_measured_among_textures_alike(training, light):
+    """Noise of rounding, and terrain that is darker than that of training, leave a fifth."""
+    images = photographs(2)[0]
+    assert compared(training, images).light == pytest.approx(1.0, rel=0.1)
+    relit = [np.clip(np.rint(light * image), 0, 255).astype(np.uint8) for image in images]
+    assert compared(training, relit).light == pytest.approx(light, rel=0.2)
+
+
 def test_compression_sets_most_of_the_finest_octave_to_nothing():
     images = photographs(2)[0]
     usual = [np.mean([look_of(compressed(i, q))[-1] for i in images]) for q in (95, 30, 10)]

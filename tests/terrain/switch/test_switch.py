@@ -168,7 +168,7 @@ def test_a_start_that_no_label_supports_is_no_longer_known(labels_from_m):
         if x >= labels_from_m:
             switch = switch.add_label(seen_at(x, "unknown"))
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        assert switch.footing.terrain == ("grass" if x <= 3.0 else "unknown")
+        assert switch.footing.terrain == ("grass" if x <= SwitchConfig().unknown_m else "unknown")
     assert switch.in_force == "grass"
 
 

@@ -1,0 +1,57 @@
+"""Names that would be others in the light of the training photographs."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import ByteImage
+from odometry.run import UNKNOWN
+from terrain.classification.answer import Classification
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.own_statistics import OwnStatisticsClassifier
+from terrain.classification.trained import Classifier
+
+# Of the light of training. Runs of photographs held out, of terrain that is known, lie within.
+USUAL_LIGHT = 0.75, 1.33
+BY_LIGHT = "it would have another name in the light of the training photographs"
+
+
+def unless_by_light(
+    classifier: Classifier,
+    images: Sequence[ByteImage],
+    answers: Sequence[Classification],
+    likeness: Likeness | None,
+) -> list[Classification]:
+    """The answers, ``unknown`` where the name is another one once the light is that of training.
+
+    In little light every terrain looks like the dark ones that are known, and each image alone is
+    like a photograph of these. Nothing gets a name by this. A classifier that takes the statistics
+    of the run itself is asked nothing.
+
+    Parameters
+    ----------
+    classifier : Classifier
+    images : sequence of ByteImage
+        One for each answer.
+    answers : sequence of Classification
+    likeness : Likeness or None
+        Of the run that the images are of.
+    """
+    if likeness is None or not likeness.is_unlike or likeness.images < FEWEST_IMAGES:
+        return list(answers)
+    is_usual = USUAL_LIGHT[0] < likeness.light < USUAL_LIGHT[1]
+    if is_usual or isinstance(classifier, OwnStatisticsClassifier):
+        return list(answers)
+    grey = np.clip(np.rint(np.arange(256) / likeness.light), 0, 255).astype(np.uint8)
+    return [
+        answer
+        if answer.label == UNKNOWN or answer.label == _likeliest(classifier, grey[image])
+        else replace(answer, label=UNKNOWN, reason=BY_LIGHT)
+        for image, answer in zip(images, answers, strict=True)
+    ]
+
+
+def _likeliest(classifier: Classifier, image: ByteImage) -> str:
+    (answer,) = classifier.classify([image])
+    return max(answer.probabilities, key=lambda name: answer.probabilities[name])
