@@ -84,6 +84,16 @@ def repetition(
 
 
 @dataclass(frozen=True)
+class _Fitted:
+    """What one delay and filter explain of the changes, and the fit (P + 1, N) of the values."""
+
+    of_changes: float
+    design: FloatArray
+    solution: FloatArray
+    rounded: float
+
+
+@dataclass(frozen=True)
 class _Trial:
     at_s: FloatArray
     values: FloatArray
@@ -98,29 +108,31 @@ class _Trial:
 
     def left(self, delay_s: float, smoothed_s: float) -> float:
         """Share of the squares of the changes that is left."""
-        return 1 - self.fit(delay_s, smoothed_s).of_changes
+        return 1 - self._fitted(delay_s, smoothed_s).of_changes
 
     def fit(self, delay_s: float, smoothed_s: float) -> Repetition:
+        found = self._fitted(delay_s, smoothed_s)
+        return Repetition(
+            found.of_changes,
+            _explained(self.values, found.solution @ found.design, found.rounded),
+            delay_s,
+            smoothed_s,
+            found.solution[:-1],
+            noise_of((1 - found.of_changes) * float(np.mean(self._changes**2))),
+        )
+
+    def _fitted(self, delay_s: float, smoothed_s: float) -> "_Fitted":
         columns, changes = self.columns(self.sources, delay_s, smoothed_s), self._changes
         of_columns = np.diff(columns, ORDER)[:, self._ordinary]
         design = np.vstack([columns, np.ones(len(self.values))])
         solution = least_squares(design, self.values)
-        coefficients = solution[:-1]
-        digits = np.append(coefficients * self._digits, self._digit)
+        digits = np.append(solution[:-1] * self._digits, self._digit)
         rounded = float(np.sum(digits**2)) / 12
         left_of_changes = OF_NOISE * rounded
         if left_of_changes > ROUNDED * float(np.mean(changes**2)):
             rounded = left_of_changes = 0.0
         fitted = least_squares(of_columns, changes) @ of_columns
-        of_changes = _explained(changes, fitted, left_of_changes)
-        return Repetition(
-            of_changes,
-            _explained(self.values, solution @ design, rounded),
-            delay_s,
-            smoothed_s,
-            coefficients,
-            noise_of((1 - of_changes) * float(np.mean(changes**2))),
-        )
+        return _Fitted(_explained(changes, fitted, left_of_changes), design, solution, rounded)
 
     @cached_property
     def _ordinary(self) -> BoolArray:
