@@ -48,7 +48,7 @@ def _stuck(
     if np.abs(values[row]) < STANDING * evidence.fastest_m_s:
         if (slow := slow_speeds_zero(evidence, name, spans, times)) is not None:
             return slow
-        or_slowly = or_slow(evidence, name, spans)
+        or_slowly = or_slow(evidence, name, spans) or _or_stands(evidence, name, spans)
     limited = _or_limited(values, float(values[row]), or_slowly, both=both)
     return Finding(
         "stuck_encoder",
@@ -59,6 +59,18 @@ def _stuck(
         f"stuck or was lost{limited}",
         "Cut the recording with --from and --to, or leave it out",
         tuple(in_run_time),
+    )
+
+
+def _or_stands(evidence: Evidence, name: str, spans: list[tuple[float, float]]) -> str:
+    """What else it may be where the other tread alone explains the turns of each such time."""
+    side = ("v_left", "v_right").index(name)
+    sensors = list(measured_turns(evidence))
+    if not all(any(of.pivots(span, side) for of in sensors) for span in spans):
+        return ""
+    return (
+        "this tread stands or is slow, and slow speeds read zero: the other one alone explains the "
+        "turns of these times"
     )
 
 

@@ -9,6 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.outliers import peaks, spikes
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import TREADS, changed, in_turn
+from odometry.checks.treads.slow_speeds import EDGE, least_read_m_s
 from odometry.checks.treads.treads import step_of
 from odometry.windows.spans import runs_of
 
@@ -16,6 +17,8 @@ DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 # Share of the speeds in motion that are slower than those beside zeros: of lost messages a half.
 FEW, SLOWEST = 20, 0.15
 PEAKS = 0.004  # share of the samples; 0.0003 of real recordings
+OR_SLOW = "Either slow speeds read zero (a dead band: none slower is read), or samples"
+OR_SLOWEST = "Either it is the slowest speed that is read (slower ones read zero), or a"
 STOP_S = 0.3  # no robot stops and is at full speed again within
 STEPS = 1.5  # of coarse readings, above which a speed does not round to zero
 LEAST_SAME, SAME = 8, 0.5  # rows of one value, their share of all that are alone and of that value
@@ -67,11 +70,13 @@ def peaks_often(evidence: Evidence) -> str:
 
 def _dropped(evidence: Evidence) -> Iterator[Finding]:
     """Single zeros amid motion; where only the slowest speeds are lost, no message was."""
-    counts, spans, shares, mends = {}, [], [], []
+    counts, spans, shares, mends, slow = {}, [], [], [], []
     for name in TREADS:
         zero, least_m_s = _zeros(evidence, name)
         before = np.abs(evidence.run.odometry[name][zero - 1])
         moving = np.abs(evidence.speeds_m_s[:, TREADS.index(name)])
+        slowest_m_s = least_read_m_s(moving, evidence.fastest_m_s)
+        slow += (before < EDGE * slowest_m_s).tolist()
         moving = np.sort(moving[moving > least_m_s])
         shares += (np.searchsorted(moving, before) / max(len(moving), 1)).tolist()
         counts[name] = len(zero)
@@ -80,13 +85,14 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
     total = sum(counts.values())
     if total and not (total > FEW and np.median(shares) < SLOWEST):
         share = total / (2 * len(evidence.stamps_s))
+        either = OR_SLOW if np.median(slow) > 0 else ""
         yield Finding(
             "dropped_speeds",
             Level.WARNING if total > 5 and share > DROPPED else Level.NOTE,
             f"tread speeds are zero between two of full speed in {counted(total, 'sample')} "
             f"(v_left {counts['v_left']}, v_right {counts['v_right']})",
-            "Samples drop out: zeros are written where a message was lost; or rows are out of "
-            "order, or small speeds read too large beside a tread that stands",
+            f"{either or 'Samples'} drop out: zeros are written where a message was lost; or rows "
+            "are out of order, or small speeds read too large beside a tread that stands",
             "Remove these rows: the speed before them holds meanwhile",
             tuple((span, span) for span in sorted(spans)),
             mend=in_turn(*mends),
@@ -127,8 +133,8 @@ def _held_in(runs: IntArray) -> Callable[[FloatArray], FloatArray]:
 
 def _placeholders(evidence: Evidence) -> Iterator[Finding]:
     """One exact value, not zero, that comes for single rows amid others far from it."""
-    stamps_s, seen, spans = evidence.stamps_s, [], []
-    for name in ("v_left", "v_right"):
+    stamps_s, seen, spans, slow = evidence.stamps_s, [], [], True
+    for name in TREADS:
         values = evidence.run.odometry[name]
         least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
         before, here, after = values[:-2], values[1:-1], values[2:]
@@ -141,6 +147,7 @@ def _placeholders(evidence: Evidence) -> Iterator[Finding]:
         if counts.max() < SAME * np.sum(values == value):
             continue  # a speed that lasts elsewhere
         rows = np.flatnonzero(alone & (here == value)) + 1
+        slow &= abs(value) < EDGE * least_read_m_s(np.abs(values), evidence.fastest_m_s)
         seen.append(f"{name} is {value:.6g} m/s in {counted(len(rows), 'row')}")
         spans += [(evidence.run_time_s(s),) * 2 for s in stamps_s[rows]]
     if seen:
@@ -148,7 +155,7 @@ def _placeholders(evidence: Evidence) -> Iterator[Finding]:
             "placeholder_speeds",
             Level.WARNING,
             f"{' and '.join(seen)}, each time alone amid other speeds",
-            "A placeholder is written where nothing was measured",
+            f"{OR_SLOWEST if slow else 'A'} placeholder is written where nothing was measured",
             "Remove these rows: the speed before them holds meanwhile",
             tuple(sorted(spans)),
         )

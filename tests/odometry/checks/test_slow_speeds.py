@@ -5,7 +5,8 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.test_other_robots import drive
+from tests.odometry.checks.faulty import put
+from tests.odometry.checks.test_other_robots import WIDTH_M, drive
 from tests.odometry.checks.test_stuck_encoders import SENSORS, held, limited
 
 
@@ -77,3 +78,61 @@ def test_an_encoder_that_is_lost_while_slow_by_chance_may_be_either(driven, sens
     assert found.name == "stuck_encoder"
     assert found.cause.startswith("Either the encoder of the left tread is stuck or was lost; or")
     assert "slow speeds read zero" in found.cause
+
+
+def never_slow():
+    """Speeds between 0.4 and 1.4 m/s, of which the left tread reads none slower."""
+    at_s = 0.05 * np.arange(3200)
+    return drive(0.9 + 0.5 * np.sin(at_s), 0.1 * np.sin(at_s / 1.7))
+
+
+def with_zeros(run, slow):
+    """Twelve single zeros in v_left, beside its slowest speeds, or beside any."""
+    speed = run.odometry["v_left"].copy()
+    rows = np.flatnonzero(speed < np.quantile(speed, 0.1)) if slow else np.arange(50, 3150)
+    speed[rows[:: len(rows) // 12]] = 0.0
+    return put(run, "odometry", v_left=speed)
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize(("slow", "begin"), [(True, "Either slow speeds"), (False, "Samples drop")])
+def test_zeros_beside_the_slowest_speed_that_is_read_may_be_slow(slow, begin, sensors):
+    run = with_zeros(SENSORS[sensors](never_slow()), slow)
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "dropped_speeds"
+    assert found.cause.startswith(begin)
+
+
+@pytest.mark.parametrize(("value", "begin"), [(0.45, "Either it is the slowest"), (1.7, "A place")])
+def test_a_value_amid_zeros_may_be_the_slowest_that_is_read(value, begin):
+    run = held(never_slow(), "v_left", 60, 62, 0.0)
+    speed = run.odometry["v_left"].copy()
+    speed[1201:1240:4] = value
+    (found,) = (
+        f
+        for f in check_recording(put(run, "odometry", v_left=speed)).findings
+        if f.name == "placeholder_speeds"
+    )
+    assert found.cause.startswith(begin)
+
+
+def test_an_encoder_whose_tread_may_stand_is_not_surely_lost():
+    """Where the other tread alone explains the turns of that time."""
+    at_s = 0.05 * np.arange(3200)
+    arc, right = (at_s > 60) & (at_s < 75), 1 + 0.5 * np.sin(2 * at_s)
+    speed = np.where(arc, 0.675 * right, 0.6 + 0.5 * np.sin(at_s / 3))
+    run = drive(speed, np.where(arc, 0.65 / WIDTH_M * right, 0.5 * np.sin(at_s / 1.7)))
+    (found,) = check_recording(held(run, "v_left", 60, 75, 0.0)).at(Level.WARNING)
+    assert found.name == "stuck_encoder"
+    assert "this tread stands or is slow" in found.cause
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_an_encoder_that_is_lost_near_the_slowest_speed_that_it_reads_may_be_slow(sensors):
+    """At 0.5 m/s, of a tread that reads none below 0.4 m/s anywhere."""
+    at_s = 0.05 * np.arange(3200)
+    steady = (at_s > 60) & (at_s < 75)
+    run = drive(np.where(steady, 0.5, 0.95 + 0.5 * np.sin(at_s)), 0.1 * np.sin(at_s / 1.7))
+    (found,) = check_recording(held(SENSORS[sensors](run), "v_left", 60, 75, 0.0)).at(Level.WARNING)
+    assert found.name == "stuck_encoder"
+    assert "it reads none between 0 and 0.4" in found.cause
