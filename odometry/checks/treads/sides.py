@@ -10,6 +10,7 @@ from odometry.checks.evidence.motion import turns_both_ways
 from odometry.checks.evidence.relation import Relation, pieces, relation
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import Mend, changed, treads_times
+from odometry.checks.treads.side_changes import constant_as_well, side_changes
 from odometry.checks.treads.straight_drives import straight_drives
 
 LEAST_OFFSET_M_S = 0.03
@@ -83,10 +84,10 @@ def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> It
             f"right, and has {100 * along[0] / along.sum():.0f} % of the way along"
         )
         return
-    if not _lasts(evidence, ratio):
+    if but := side_changes(evidence) or constant_as_well(evidence) or _varies(evidence, ratio):
         yield disagreement(
             f"a metre of the left tread turns the robot {ratio:.3g} times as much as one of the "
-            "right, but not all the time, or not at each speed and in each direction"
+            f"right, but {but}"
         )
         return
     sure = forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES)
@@ -112,8 +113,8 @@ def _as_the_other(evidence: Evidence, ratio: float) -> Mend:
     return treads_times(min(ratio, 1.0), min(1 / ratio, 1.0))
 
 
-def _lasts(evidence: Evidence, ratio: float) -> bool:
-    """Whether each part of the recording with enough motion has the ratio of the whole.
+def _varies(evidence: Evidence, ratio: float) -> str:
+    """Words where a part of the recording with enough motion has not the ratio of the whole.
 
     Parts are of time, of slow and fast motion, forwards and backwards, left and right turns.
     """
@@ -125,7 +126,10 @@ def _lasts(evidence: Evidence, ratio: float) -> bool:
     found = [*pieces(turns, m.left_m, m.right_m), *filter(None, fits)]
     logarithms = [_log_ratio(part) for part in found if part.certain(0, TIMES)]
     size = abs(np.log(ratio))
-    return all(of / np.log(ratio) > LASTING for of, sigma in logarithms if sigma < LASTING * size)
+    sure = (of for of, sigma in logarithms if sigma < LASTING * size)
+    if all(of / np.log(ratio) > LASTING for of in sure):
+        return ""
+    return "not all the time, or not at each speed and in each direction"
 
 
 def _log_ratio(turn: Relation) -> tuple[float, float]:
@@ -155,10 +159,13 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
     if not 0.5 < abs(along / (forward.coefficients[:2].mean() * offset)) < 2.0:
         return
     left = (along < 0) == (offset > 0)
-    if mixed := _a_part_of_the_other(evidence, turn, left):
-        yield disagreement(mixed)
+    if but := side_changes(evidence) or _a_part_of_the_other(evidence, turn, left):
+        yield disagreement(but)
         return
     reads = offset if left else -offset
+    besides = "much at times (peaks that are held)"
+    if reads * np.sign(np.sum(m.mean_m)) < 0:
+        besides = "little at each speed (a dead zone: slow ones read zero)"
     tread = f"The {'left' if left else 'right'} tread has"
     yield Finding(
         "tread_offset",
@@ -166,7 +173,7 @@ def _offset(evidence: Evidence) -> Iterator[Finding]:
         f"the robot turns {turn.coefficients[2]:+.3f} rad/s and moves {along:+.3f} m/s besides "
         "what the treads say",
         f"{tread} an offset of about {abs(offset):.3f} m/s: it reads a constant besides its speed, "
-        "a zero that was never set; or it reads too much at times (peaks that are held)",
+        f"a zero that was never set; or it reads too {besides}",
         "Look what it reads while the robot is stationary: an offset stays, and can be subtracted",
         mend=changed("odometry", "v_left" if left else "v_right", lambda speed: speed - reads),
     )

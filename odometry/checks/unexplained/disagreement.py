@@ -12,14 +12,17 @@ from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.imu.gyroscope import drifts_at_rest
 from odometry.checks.imu.gyroscope_by_poses import headings_apart, scales_apart
 from odometry.checks.poses.yaw_drift import course_drifts
+from odometry.checks.treads.play import play
 from odometry.checks.treads.proportion import (
     holds_the_mean,
     one_side_not_proportional,
     treads_unlike,
 )
+from odometry.checks.treads.side_changes import side_changes
 from odometry.checks.treads.tread_samples import peaks_often
 from odometry.checks.unexplained.beyond_slip import beyond_slip
 from odometry.checks.unexplained.little_explained import little_explained
+from odometry.checks.unexplained.moments_of_spin import moments_of_spin
 from odometry.checks.unexplained.position_differences import (
     paths_apart,
     positions_apart,
@@ -34,6 +37,7 @@ def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[F
     if any(finding.level is not Level.NOTE for finding in found):
         return
     seen = [*lasting_disagreements(evidence), uneven_map(evidence), peaks_often(evidence)]
+    seen += [moments_of_spin(evidence), play(evidence)]
     if not any(finding.name == "slip_episodes" for finding in found):
         seen.append(positions_apart(evidence))
     if any(seen):
@@ -53,6 +57,7 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         paths_apart(evidence),
         one_side_not_proportional(evidence),
         holds_the_mean(evidence),
+        side_changes(evidence),
         scale_drifts(evidence),
         carried_along(evidence),
         beyond_slip(evidence),

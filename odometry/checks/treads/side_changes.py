@@ -1,0 +1,176 @@
+"""Turns of the treads that something else explains far better: a scale of one side that changes.
+
+From a moment on (a tyre goes flat), backwards, or by a constant at slow speeds (a dead zone).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.least_squares import least_squares
+from odometry.checks.evidence.measured_turns import measured_turns
+from odometry.checks.evidence.once import once
+
+LEAST_WINDOWS = 40
+ORDINARY = 0.97  # share of the windows that are compared: those that the treads explain best
+MOMENTS = np.linspace(0.1, 0.9, 17)  # shares of the time at which a scale is asked to change
+LEAST_OF_EACH = 10  # windows in which a tread runs backwards
+# Of the squares that the treads leave of the turns of 75 real recordings as they are, a change of
+# one side, backwards or from a moment on, leaves 0.75 and more where it explains 0.95 of the turns,
+# and a constant at slow speeds 0.71; 0.04 to 0.5 where there was such a change in simulated ones.
+HALF, EXPLAINED = 0.5, 0.95
+ALONE = 0.7  # of what the same change of both sides, or of a bias of the gyroscope, leaves
+CHANGED = 0.1  # of the scale of that side, that changes at least
+STANDING, LEAST_SPEED = 0.02, 0.02  # of the ordinary fastest speed: of a tread, and of the constant
+AS_WELL = 1.2  # times what two scales leave, that one scale and a constant leave
+
+
+@dataclass(frozen=True)
+class Turns:
+    """K windows: travel of the treads, duration, measured turn, and what the treads leave of it.
+
+    `squares` are those of what is left, `share` is that of all turns.
+    """
+
+    left_m: FloatArray
+    right_m: FloatArray
+    lasts_s: FloatArray
+    turned_rad: FloatArray
+    start_s: FloatArray
+    squares: float
+    share: float
+
+    def left_by(self, more: FloatArray) -> tuple[float, FloatArray]:
+        """Share of `squares` that is left with one column more (K,), and the coefficients (4,)."""
+        return self.fit(self.left_m, self.right_m, self.lasts_s, more)
+
+    def left_by_one_scale(self, more: FloatArray) -> float:
+        """The same of treads of one scale."""
+        return self.fit(self.right_m - self.left_m, self.lasts_s, more)[0]
+
+    def fit(self, *columns: FloatArray) -> tuple[float, FloatArray]:
+        """Share of `squares` that some columns (P, K) leave, and their coefficients (P,)."""
+        rows = np.stack(columns)
+        if not rows.any(axis=1).all():
+            return np.inf, np.ones(len(rows))
+        found = least_squares(rows, self.turned_rad)
+        left = float(np.sum((self.turned_rad - found @ rows) ** 2))
+        return left / max(self.squares, 1e-300), found
+
+    def constants_s(self, fastest_m_s: float) -> tuple[FloatArray, FloatArray]:
+        """Seconds (K,) in which each tread moves, with the sign of its travel."""
+        found = []
+        for way_m in (self.left_m, self.right_m):
+            moves = np.abs(way_m) > STANDING * fastest_m_s * self.lasts_s
+            found.append(np.where(moves, np.sign(way_m) * self.lasts_s, 0.0))
+        return found[0], found[1]
+
+
+@once
+def side_changes(evidence: Evidence) -> str:
+    """Words where a scale that changes explains the turns far better; "" elsewhere."""
+    turns = turns_by_treads(evidence)
+    if turns is None:
+        return ""
+    found = [*_changes(evidence, turns), *_slow(evidence, turns)]
+    left, words = min(found, default=(np.inf, ""))
+    return words if left * turns.share < 1 - EXPLAINED else ""
+
+
+def constant_as_well(evidence: Evidence) -> str:
+    """Words where both sides may have one scale, and one reads a constant less as it moves."""
+    turns = turns_by_treads(evidence)
+    if turns is None:
+        return ""
+    constants_s = turns.constants_s(evidence.fastest_m_s)
+    side = int(np.argmin([turns.left_by_one_scale(of) for of in constants_s]))
+    if turns.left_by_one_scale(constants_s[side]) > AS_WELL:
+        return ""
+    return (
+        "one scale of both explains the turns as well, with a constant by which the "
+        f"{('left', 'right')[side]} tread reads too little, or too much, while it moves (a dead "
+        "zone: slow speeds read zero)"
+    )
+
+
+@once
+def turns_by_treads(evidence: Evidence) -> Turns | None:
+    """Of the first sensor that measures turns, without outliers; None with few windows."""
+    measured = next(measured_turns(evidence))
+    m, target = measured.motion, measured.target
+    rows = np.stack([m.left_m, m.right_m, m.lasts_s])
+    known = np.flatnonzero(np.isfinite(target) & np.isfinite(rows).all(axis=0))
+    if len(known) < LEAST_WINDOWS or not rows[:, known].any(axis=1).all():
+        return None
+    left = target[known] - least_squares(rows[:, known], target[known]) @ rows[:, known]
+    ordinary = np.abs(left) <= np.quantile(np.abs(left), ORDINARY)
+    kept = known[ordinary]
+    left = target[kept] - least_squares(rows[:, kept], target[kept]) @ rows[:, kept]
+    squares = float(np.sum(left**2))
+    share = squares / max(float(np.sum(target[kept] ** 2)), 1e-300)
+    left_m, right_m, lasts_s = rows[:, kept]
+    return Turns(left_m, right_m, lasts_s, target[kept], m.start_s[kept], squares, share)
+
+
+def _changes(evidence: Evidence, turns: Turns) -> Iterator[tuple[float, str]]:
+    """What is left by a scale of one side that changes, and words."""
+    begin_s, end_s = turns.start_s[[0, -1]]
+    for share in MOMENTS:
+        at_s = float(begin_s + share * (end_s - begin_s))
+        after = turns.start_s >= at_s
+        when = f"from about {evidence.run_time_s(at_s):.0f} s on"
+        yield from _of_one_side(turns, (after, after, after), when, "before")
+    mean_m = turns.left_m + turns.right_m
+    backwards = turns.left_m < 0, turns.right_m < 0, mean_m < 0
+    yield from _of_one_side(turns, backwards, "backwards", "forwards")
+
+
+def _of_one_side(
+    turns: Turns, rows: tuple[BoolArray, BoolArray, BoolArray], when: str, else_: str
+) -> Iterator[tuple[float, str]]:
+    changing_m = [
+        np.where(rows[side], way_m, 0.0) for side, way_m in enumerate((turns.left_m, turns.right_m))
+    ]
+    of_each, _ = turns.fit(turns.left_m, turns.right_m, turns.lasts_s, *changing_m)
+    if HALF < of_each < np.inf:
+        return  # one of them leaves more
+    for side in range(2):
+        if rows[side].sum() < LEAST_OF_EACH:
+            continue
+        left, of = turns.left_by(changing_m[side])
+        change = float(of[3] / of[side])
+        if left > HALF or abs(change) < CHANGED:
+            continue
+        both, _ = turns.left_by(np.where(rows[2], turns.right_m - turns.left_m, 0.0))
+        bias, _ = turns.left_by(np.where(rows[side], turns.lasts_s, 0.0))
+        if left < ALONE * min(both, bias):
+            yield (
+                left,
+                f"a metre of the {('left', 'right')[side]} tread turns the robot {1 + change:.2f} "
+                f"times as much {when} as {else_}, one of the other tread as much",
+            )
+
+
+def _slow(evidence: Evidence, turns: Turns) -> Iterator[tuple[float, str]]:
+    """What is left by a constant that one tread, or both, read too little while they move."""
+    constants_s = turns.constants_s(evidence.fastest_m_s)
+    alone = [turns.left_by(of) for of in constants_s]
+    both, of_both = turns.left_by(constants_s[1] - constants_s[0])
+    least_m_s = LEAST_SPEED * evidence.fastest_m_s
+    for side, (left, of) in enumerate(alone):
+        less_m_s = float(of[3] / of[side])
+        if left < HALF and left < ALONE * min(alone[1 - side][0], both) and less_m_s > least_m_s:
+            yield left, _too_little(f"the {('left', 'right')[side]} tread reads", less_m_s)
+    less_m_s = float(of_both[3] / of_both[1])
+    if both < HALF and less_m_s > least_m_s:
+        yield both, _too_little("both treads read", less_m_s)
+
+
+def _too_little(reads: str, speed_m_s: float) -> str:
+    return (
+        f"{reads} about {speed_m_s:.2g} m/s too little while moving, as where slow speeds read "
+        "zero (a dead zone)"
+    )
