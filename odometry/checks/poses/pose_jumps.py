@@ -153,10 +153,10 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
         Level.WARNING,
         f"poses move by up to {farthest_m:.2f} m while both treads read zero "
         f"({counted(len(at_s), 'time')}, first at {evidence.run_time_s(at_s[0]):.1f} s)",
-        "Odometry is lost: the log writes zeros (a motor driver or bus that stopped); or the "
-        "robot was pushed, carried or slid, or poses jump, or their stamps are off (late, or "
-        "of a clock of another rate), or these are commands and it coasts, or they "
-        "are held between two readings, or two recordings are joined there",
+        "Either odometry is lost: the log writes zeros (a motor driver or bus that stopped); or "
+        "the robot was pushed, carried or slid, or poses jump, or their stamps are off (late, or "
+        "of a clock that was set or has another rate), or these are commands and it coasts, or "
+        "they are held between two readings, or two recordings are joined there",
         "Cut the recording with --from and --to",
         moments(evidence, at_s),
     )

@@ -14,7 +14,8 @@ from odometry.checks.stamps.held_treads import held_treads
 from odometry.checks.stamps.late_positions import apart_from_yaw
 from odometry.checks.stamps.late_stamps import one_side_alone
 from odometry.checks.stamps.one_delay import answers, is_one_delay
-from odometry.checks.stamps.timing import found_in, lags_of, pose_period_s
+from odometry.checks.stamps.set_clocks import step_of_lag
+from odometry.checks.stamps.timing import drifting, found_in, lags_of, pose_period_s
 
 OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
 # Shares of the squares not explained, and of the mean difference in the nine tenths of the windows
@@ -77,6 +78,8 @@ def _by_one_delay(
     evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
 ) -> Finding:
     """The finding where one delay explains it best; what is known where it does not, or may not."""
+    if finding.name == "clocks_apart":
+        return _apart_or_set(evidence, finding, lags)
     if finding.name not in LATE:
         return finding
     found = list(answers(evidence, LATE[finding.name], lags))
@@ -88,6 +91,19 @@ def _by_one_delay(
         if answer.is_stepped:
             return disagreement(f"{finding.seen}, but {answer.in_steps}")
     return replace(finding, cause=UNDECIDED + finding.cause[:1].lower() + finding.cause[1:])
+
+
+def _apart_or_set(
+    evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
+) -> Finding:
+    """Clocks that run apart; where one step of their lag explains as much, what is known."""
+    words, clearly = step_of_lag(evidence, *next(iter(drifting(evidence, lags).items())))
+    if clearly:
+        return disagreement(f"{finding.seen}, but {words}, explains the turns better")
+    if words:
+        apart = finding.cause[:1].lower() + finding.cause[1:]
+        return replace(finding, cause=f"Either {apart}; or one was set: {words}")
+    return finding
 
 
 def _goes_along(evidence: Evidence, finding: Finding) -> bool | None:

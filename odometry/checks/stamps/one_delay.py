@@ -122,28 +122,28 @@ def _answer(
     at_s = grid_s[some]
     delays_s = lag_s + np.arange(-REACH_S, REACH_S + STEP_S / 2, STEP_S)
     by_delay, *wider = (
-        np.stack([_rate(early, at_s - delay_s, times * width_s) for delay_s in delays_s])
+        np.stack([rate(early, at_s - delay_s, times * width_s) for delay_s in delays_s])
         for times in (1.0, *WIDER)
     )
-    now = np.nan_to_num(_rate(early, grid_s, width_s))
+    now = np.nan_to_num(rate(early, grid_s, width_s))
     by_filter = np.stack([_filtered(now, constant_s)[some] for constant_s in CONSTANTS_S])
-    rows = [_rate(late, at_s, width_s)[None], by_delay, by_filter, *wider]
+    rows = [rate(late, at_s, width_s)[None], by_delay, by_filter, *wider]
     known = np.all([np.isfinite(of).all(axis=0) for of in rows], axis=0)
     if known.sum() < PARTS:
         return None
-    measured, by_delay, by_filter, *wider = (_centred(of[:, known]) for of in rows)
-    one, slow = _left(measured[0], by_delay), _left(measured[0], by_filter)
+    measured, by_delay, by_filter, *wider = (centred(of[:, known]) for of in rows)
+    one, slow = left_by(measured[0], by_delay), left_by(measured[0], by_filter)
     best = int(np.argmin(one))
     if not one[best] > 0:
         return None
     gain = float(by_delay[best] @ measured[0] / np.sum(by_delay[best] ** 2))
-    stepped, before, after, share = _stepped((measured[0] - gain * by_delay) ** 2)
+    stepped, before, after, share = two_delays((measured[0] - gain * by_delay) ** 2)
     return Answer(
         NAMES[pair[0]],
         NAMES[pair[1]],
         float(one[best] / np.sum(measured**2)),
         float(slow.min() / one[best]),
-        float(min(_left(measured[0], of).min() for of in wider) / one[best]),
+        float(min(left_by(measured[0], of).min() for of in wider) / one[best]),
         CONSTANTS_S[int(np.argmin(slow))],
         stepped / float(one[best]),
         float(delays_s[before]),
@@ -152,12 +152,13 @@ def _answer(
     )
 
 
-def _centred(rates: FloatArray) -> FloatArray:
-    """Rates (D, N) less their means, as of a bias."""
-    return np.asarray(rates - rates.mean(axis=1, keepdims=True))
+def centred(rates: FloatArray) -> FloatArray:
+    """Rates (..., N) less their means, as of a bias."""
+    return np.asarray(rates - rates.mean(axis=-1, keepdims=True))
 
 
-def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
+def rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
+    """Rates (N,) of a heading over a width around some stamps (N,)."""
     return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
 
 
@@ -167,13 +168,13 @@ def _filtered(rates: FloatArray, constant_s: float) -> FloatArray:
     return np.convolve(rates, kernel / kernel.sum())[: len(rates)]
 
 
-def _left(measured: FloatArray, by: FloatArray) -> FloatArray:
+def left_by(measured: FloatArray, by: FloatArray) -> FloatArray:
     """Squares (D,) of measured rates (N,) that each of some rates (D, N) leaves, times a gain."""
     explained = (by @ measured) ** 2 / np.maximum(np.sum(by**2, axis=1), 1e-300)
     return np.asarray(np.sum(measured**2) - explained)
 
 
-def _stepped(squares: FloatArray) -> tuple[float, int, int, float]:
+def two_delays(squares: FloatArray) -> tuple[float, int, int, float]:
     """What the best two rows of squares (D, N) leave, one before and one after the best moment.
 
     Returns

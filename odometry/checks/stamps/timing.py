@@ -1,6 +1,6 @@
 """Late sensors, and clocks that run apart."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -39,9 +39,9 @@ def timing(evidence: Evidence) -> Iterator[Finding]:
 
 def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[Finding]:
     """The findings of `timing` by `lags_of` the evidence."""
-    drifting = _drifting(evidence, lags)
-    if drifting:
-        yield clocks_apart(evidence, drifting)
+    apart = drifting(evidence, lags)
+    if apart:
+        yield clocks_apart(evidence, apart)
         return
     held = held_s(evidence)
     late = {
@@ -137,7 +137,7 @@ def _with_growth_undone(
     )
 
 
-def _drifting(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> dict[tuple[str, str], Lag]:
+def drifting(evidence: Evidence, lags: Mapping[tuple[str, str], Lag]) -> dict[tuple[str, str], Lag]:
     """Pairs of different clocks whose lag grows; treads share theirs with what is in their file."""
     pairs = {pair: lag for pair, lag in lags.items() if _drifts(evidence, lag)}
     if evidence.gyroscope_file == "odometry.csv":

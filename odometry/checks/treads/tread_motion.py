@@ -65,7 +65,10 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
     speeds, stamps_s = evidence.speeds_m_s, evidence.stamps_s
     inside = within(stamps_s, np.array(odd))
     if not np.abs(speeds[inside]).max() > 0:
-        return f"{LOST}; or the robot was pushed, carried or slid"
+        return (
+            f"{LOST}; or the robot was pushed, carried or slid, or stamps are off (a clock that "
+            "was set), or both treads moved too slowly to be read (a dead zone)"
+        )
     moving = (np.abs(speeds[1:]).max(axis=1) > 0) & ~inside[1:]
     repeated = (speeds[1:] == speeds[:-1]).all(axis=1)
     if repeated[moving].sum() <= REPEATS * moving.sum():

@@ -1,0 +1,87 @@
+"""Clocks that run apart, or one that was set: a lag that grows evenly, or in one step."""
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag
+from odometry.checks.stamps.late_stamps import CLEARLY
+from odometry.checks.stamps.one_delay import (
+    GRID_S,
+    LEAST_WIDTH_S,
+    MOST_TIMES,
+    PARTS,
+    STEP_S,
+    centred,
+    left_by,
+    rate,
+    two_delays,
+)
+from odometry.checks.stamps.timing import headings_by_sensor, pose_period_s
+
+GROWTHS = np.linspace(0.6, 1.4, 9)  # of the growth that was found
+AROUND_S = 0.3  # of the lags that were found, at either end of the recording
+
+
+def step_of_lag(evidence: Evidence, pair: tuple[str, str], lag: Lag) -> tuple[str, bool]:
+    """Words where one step of a lag that grows explains the turns about as well; "" elsewhere.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    pair : (late, early)
+        Names of `headings_by_sensor`.
+    lag : Lag
+
+    Returns
+    -------
+    words : str
+    clearly : bool
+        Whether the step explains them clearly better.
+    """
+    found = _left_by_delays(evidence, pair, lag)
+    if found is None:
+        return "", False
+    at_s, delays_s, squares = found
+    middle_s = float(evidence.stamps_s[[0, -1]].mean())
+    grown = np.inf
+    for growth in GROWTHS:
+        lags_s = lag.seconds + growth * lag.drift * (at_s - middle_s)
+        rows = np.clip(np.round((lags_s - delays_s[0]) / STEP_S), 0, len(delays_s) - 1)
+        grown = min(grown, float(np.sum(squares[rows.astype(int), np.arange(len(at_s))])))
+    stepped, before, after, share = two_delays(squares)
+    if stepped > grown / CLEARLY:
+        return "", False
+    moment_s = evidence.run_time_s(float(at_s[min(int(share * len(at_s)), len(at_s) - 1)]))
+    words = (
+        f"a lag of {delays_s[before]:+.2f} s before {moment_s:.0f} s of run time, and of "
+        f"{delays_s[after]:+.2f} s after, as of a clock that was set"
+    )
+    return words, stepped < CLEARLY * grown
+
+
+def _left_by_delays(
+    evidence: Evidence, pair: tuple[str, str], lag: Lag
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Stamps (N,), delays (D,), and squares (D, N) of the rates that each delay leaves at each.
+
+    Delays are those that a lag which grows has in the recording; None where too little is known.
+    """
+    signals = headings_by_sensor(evidence)
+    period_s = pose_period_s(evidence) if "pose" in pair else 0.0
+    width_s = max(LEAST_WIDTH_S, 2 * period_s, 2 * evidence.period_s)
+    begin_s, end_s = evidence.stamps_s[[0, -1]]
+    every = 1 + int((end_s - begin_s) / GRID_S) // MOST_TIMES
+    at_s = np.arange(begin_s, end_s, every * GRID_S)
+    reach_s = abs(lag.drift) * (end_s - begin_s) / 2 + AROUND_S
+    delays_s = lag.seconds + np.arange(-reach_s, reach_s + STEP_S, STEP_S)
+    late, early = (signals[name] for name in pair)
+    by_delay = np.stack([rate(early, at_s - delay_s, width_s) for delay_s in delays_s])
+    measured = rate(late, at_s, width_s)
+    known = np.isfinite(by_delay).all(axis=0) & np.isfinite(measured)
+    if known.sum() < PARTS:
+        return None
+    by_delay, measured = centred(by_delay[:, known]), centred(measured[known])
+    best = by_delay[int(np.argmin(left_by(measured, by_delay)))]
+    gain = float(best @ measured / (best @ best))
+    return at_s[known], delays_s, (measured - gain * by_delay) ** 2

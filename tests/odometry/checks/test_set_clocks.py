@@ -1,0 +1,43 @@
+"""Lags that grow evenly, and lags that change in one step."""
+
+import re
+
+import numpy as np
+import pytest
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.lag import Lag
+from odometry.checks.recording import check_recording
+from odometry.checks.stamps.set_clocks import step_of_lag
+from tests.odometry.checks.faulty import pose_stamps
+from tests.odometry.checks.test_one_delay import stepping
+
+
+def set_at(share, step_s):
+    return lambda t: t + step_s * (t > t[0] + share * np.ptp(t))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("share", [0.4, 0.5, 0.6])
+def test_a_clock_that_is_set_does_not_run_apart_as_a_fact(share, seed):
+    run = pose_stamps(stepping(seed), set_at(share, 0.6))
+    for found in check_recording(run).findings:
+        assert found.name != "clocks_apart" or found.cause.startswith("Either clocks run apart")
+
+
+def test_the_step_and_its_moment_are_said():
+    evidence = Evidence(pose_stamps(stepping(), set_at(0.5, 0.6)))
+    growing = Lag(0.3, 0.03, 0.6 / 160, 0.0005, 0.9, 8, 0.8)
+    words, clearly = step_of_lag(evidence, ("pose", "gyroscope"), growing)
+    before_s, moment_s, after_s = map(float, re.findall(r"[+-]?[0-9]+\.?[0-9]*", words)[:3])
+    assert clearly
+    assert (before_s, after_s) == (pytest.approx(0, abs=0.1), pytest.approx(0.6, abs=0.1))
+    assert moment_s == pytest.approx(80, abs=4)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_clocks_that_run_apart_keep_their_name(seed):
+    run = pose_stamps(stepping(seed), lambda t: t[0] + 1.006 * (t - t[0]))
+    (found,) = check_recording(run).findings
+    assert found.name == "clocks_apart"
+    assert found.cause.startswith("Clocks run apart")
