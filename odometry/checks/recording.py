@@ -39,6 +39,7 @@ from odometry.checks.stamps.one_column_late import one_column_late
 from odometry.checks.stamps.stamp_pace import stamp_pace
 from odometry.checks.stamps.stamps import stamps, unreadable_stamps
 from odometry.checks.treads.blocked_turns import blocked_turns
+from odometry.checks.treads.equal_in_turns import equal_in_turns
 from odometry.checks.treads.one_motion import one_motion
 from odometry.checks.treads.proportion import proportion
 from odometry.checks.treads.scale_change import scale_change
@@ -74,6 +75,7 @@ CHECKS: tuple[Check, ...] = (
     position_axes,
     robot_sizes,
     equal_treads,
+    equal_in_turns,
     one_encoder,
     held_treads,
     one_column_late,

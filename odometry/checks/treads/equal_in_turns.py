@@ -1,0 +1,83 @@
+"""Both columns hold one speed where the robot turns, and each its own elsewhere."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import BoolArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.measured_turns import MeasuredTurns, measured_turns
+from odometry.checks.evidence.relation import relation
+from odometry.checks.findings.finding import Finding, Level
+from odometry.windows.spans import runs_of
+
+SHARP = 0.3  # of the sharpest turns: a robot that slips a little turns less
+# A robot follows its treads later by less: then it turns on while they are equal again.
+LASTING_S, LEAST_WINDOWS = 1.5, 6
+OFTEN = 0.2  # of the sharp turns, and share of the rows in them whose value is a new one
+LEAST_TURN_RAD = 1.0
+STRAIGHT = 0.1  # of the sharpest turns, below which the robot drives straight on
+MOVING = 0.1  # of the ordinary fastest speed
+# Of the share of the sharp turns, that of straight drives: commands are equal there.
+ELSEWHERE = 0.5
+# Share of the turns explained where no row is equal; 0.78 and more of 35 drives with the mean in
+# turns, 0.52 and less where a gyroscope was late, so that commands seemed to be equal in turns.
+HELD = 0.7
+
+
+def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
+    """Speeds that are the same number, row by row, in turns that another sensor measures.
+
+    Two encoders differ in their last digits, even of a robot that slides.
+    """
+    for turns in measured_turns(evidence):
+        equal, differ = _equal_and_not(evidence, turns)
+        rates = np.abs(turns.target) / turns.motion.lasts_s
+        known = np.isfinite(rates)
+        if not equal.any() or not known.any():
+            continue
+        sharpest = np.quantile(rates[known], 0.95)
+        sharp = known & (rates > SHARP * sharpest)
+        odd = _lasting(turns, equal & sharp)
+        turned_rad = float(np.sum(np.abs(turns.target[odd])))
+        if odd.sum() < max(LEAST_WINDOWS, OFTEN * sharp.sum()) or turned_rad < LEAST_TURN_RAD:
+            continue
+        m = turns.motion
+        straight = known & (rates < STRAIGHT * sharpest)
+        straight &= np.abs(m.mean_m) > MOVING * evidence.fastest_m_s * m.lasts_s
+        if np.sum(equal & straight) * sharp.sum() > ELSEWHERE * odd.sum() * straight.sum():
+            continue
+        others = np.where(differ, turns.target, np.nan)
+        fit = relation(others, m.left_m, m.right_m, m.lasts_s)
+        if fit is None or fit.explained < HELD:
+            continue
+        yield Finding(
+            "treads_equal",
+            Level.WARNING,
+            f"v_left equals v_right in each row of {100 * odd.sum() / sharp.sum():.0f} % of the "
+            f"sharp turns, in which the robot turns by {turned_rad:.2g} rad; in others they differ",
+            "Both columns hold one speed in these turns: the mean of the treads, or one of them "
+            "twice",
+            "Log the speed of each tread; these turns are lost",
+        )
+        return
+
+
+def _equal_and_not(evidence: Evidence, turns: MeasuredTurns) -> tuple[BoolArray, BoolArray]:
+    """Windows (K,) in each row of which both treads have one speed, often a new one; in no row."""
+    left, right = evidence.run.odometry.stack("v_left", "v_right").T
+    new = np.insert(np.diff(left) != 0, 0, True)
+    rows = np.stack([np.ones(len(left)), (left == right) & (left != 0), new])
+    summed = np.cumsum(np.insert(rows, 0, 0.0, axis=1), axis=1)
+    m = turns.motion
+    first, last = (np.searchsorted(evidence.stamps_s, at_s) for at_s in (m.start_s, m.end_s))
+    count, equal, changing = summed[:, last] - summed[:, first]
+    return (count > 0) & (equal == count) & (changing > OFTEN * count), equal == 0
+
+
+def _lasting(turns: MeasuredTurns, flags: BoolArray) -> BoolArray:
+    """Those windows (K,) of unbroken stretches that last long enough."""
+    m, kept = turns.motion, np.zeros_like(flags)
+    for first, end in runs_of(flags):
+        kept[first:end] = m.end_s[end - 1] - m.start_s[first] >= LASTING_S
+    return kept
