@@ -16,7 +16,7 @@ from odometry.models.inertia_model import G_M_S2
 from odometry.models.inputs import Inputs
 from odometry.models.three_equations import solve_3x3
 
-LATERAL_M_S2 = 0.3  # with less the contact model is not fitted
+LATERAL_M_S2 = 0.1  # with less no turn shifts a load; mass follows late at any speed
 STEP = 1e-5  # of a parameter, for a derivative
 SLOW = 0.02  # of the speeds: centrifugal force is 0.0004 of its own
 
@@ -25,11 +25,11 @@ class InertiaByContact(ContactChange):
     """What centrifugal force changes, and how late mass and yaw inertia follow the balance."""
 
     name = "inertia"
-    in_words = "inertia in fast turns"
+    in_words = "inertia in turns and changes of speed"
     equation = "twist + follows(balance(speeds)) - balance(slow speeds) / slowness"
     looks_like = "fast turns that come out wider or tighter, and follow changes of speed late"
     remedy = "keep it in the model, or drive turns more slowly"
-    needs = "fast turns"
+    needs = "turns"
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:

@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 
-from odometry.arrays import FloatArray
 from odometry.effects.corrected import Added
 from odometry.effects.residual import Residual
 from odometry.gap.answer.result import Equivalent
 from odometry.gap.config import GapConfig
-from odometry.gap.fit.contest import Judged, judge, margin_of, penalty
+from odometry.gap.fit.contest import Judged, judge
 from odometry.gap.fit.fitter import Fitter
-from odometry.gap.fit.input_noise import noise_of_windows, scatter_of_noise
 from odometry.gap.name.candidates import effects_of_one_heading
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.prepare.statistic import sure_sum
+from odometry.gap.name.near_rivals import as_near
 
 TELL_APART = "a run in which the two differ: other speeds, turns or terrain"
 
@@ -49,7 +47,7 @@ def equivalents(
             continue
         rivals = (*found.contests.get(step.effect.name, ()), *(() if place else more))
         best = next((one for one in rivals if one.effect.name == step.effect.name), step)
-        for rival in _as_near(best, rivals, fitter, config):
+        for rival in as_near(best, rivals, fitter, config):
             if rival.effect.name in alike:
                 continue
             reasons = {**best.effect.alike, **best.effect.includes}
@@ -76,55 +74,6 @@ def done_by_others_too(found: Explanation, config: GapConfig) -> tuple[Equivalen
 
 def _named(one: Judged) -> tuple[str, str]:
     return one.effect.name, one.effect.form
-
-
-def _as_near(
-    best: Judged, rivals: Sequence[Judged], fitter: Fitter, config: GapConfig
-) -> list[Judged]:
-    """Rivals of another name that do not surely explain less than the best, in their order.
-
-    What includes the best has to have as much evidence: it explains no less, with more freedom.
-    """
-    others = [
-        one
-        for one in rivals
-        if one.effect.name != best.effect.name and one.gain > config.least_of_rival * best.gain
-    ]
-    if not others:
-        return []
-    own, *of_others = noise_of_windows([one.fitted for one in (best, *others)], fitter.measured)
-    margin = margin_of(config, fitter.spread(best.fitted), best.gain)
-    return [
-        rival
-        for rival, noise in zip(others, of_others, strict=True)
-        if _is_part(rival, best, config)
-        or best.evidence - rival.evidence < config.equivalent_margin
-        or (
-            best.effect.name not in rival.effect.includes
-            and _surely_lost(rival, best, noise - own, fitter, config) < margin
-        )
-    ]
-
-
-def _is_part(rival: Judged, best: Judged, config: GapConfig) -> bool:
-    included = rival.effect.name in best.effect.includes
-    return included and rival.gain > config.mostly_closed * best.gain
-
-
-def _surely_lost(
-    rival: Judged, best: Judged, kept_out: FloatArray, fitter: Fitter, config: GapConfig
-) -> float:
-    """Evidence that a rival loses, at the lower bound, noise of the tread speeds apart.
-
-    `kept_out` (K,) is the chi-squared of each window that this noise makes of the rival and not of
-    the best, which explains nothing by it.
-    """
-    less = rival.fitted.held_out - best.fitted.held_out - kept_out
-    scatter = scatter_of_noise(float(kept_out.sum()))
-    paid = penalty(rival.fitted.freedom - best.fitted.freedom, best.fitted)
-    moved = rival.fitted.base_moved - best.fitted.base_moved
-    spread = max(1.0, fitter.spread(best.fitted))
-    return (sure_sum(fitter.by_piece(less), config.trimmed) - scatter + moved) / spread + paid
 
 
 def _add_same(alike: dict[str, Equivalent], added: Added, *, by_equation: bool = False) -> None:

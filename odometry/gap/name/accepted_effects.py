@@ -15,6 +15,7 @@ from odometry.gap.locate.variables import window_variables
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_special, is_the_main_part
+from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
 from odometry.gap.name.unnamed import grown, in_bursts, last_of_each_run, with_course
@@ -103,21 +104,22 @@ class Standing(Search):
         return self._standing(grown(self, found), smooth)
 
     def _for_itself(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
-        """Without names that need a smooth function beside them, where no more such cost less.
+        """Without names beside a smooth function that others equal, or more such alone beat.
 
-        But for forces of contacts, which are right and imperfect.
+        Forces of contacts, which are right and imperfect, give way to the others alone.
         """
         names = [effect for effect in found.effects if not isinstance(effect, Residual)]
-        beside = len(names) < len(found.effects)
-        if not names or not beside or any(name.slow for name in names):
+        if not names or len(names) == len(found.effects):
+            return found
+        reason = undecided(found, self.fitter, self.config)
+        if not reason and any(name.slow for name in names):
             return found
         alone = grown(self, found)
-        if not alone.steps or len(alone.steps) > len(found.steps) or alone.cost >= found.cost:
-            return found
-        instead = next(effect for effect in alone.effects if isinstance(effect, Residual))
-        for name in names:
-            self.refuse(name, is_special(instead))
-        return self._standing(alone, smooth)
+        if not reason and 0 < len(alone.steps) <= len(found.steps) and alone.cost < found.cost:
+            reason = is_special(next(e for e in alone.effects if isinstance(e, Residual)))
+        for name in names if reason else ():
+            self.refuse(name, reason)
+        return self._standing(alone, smooth) if reason else found
 
     def _held_out_left(self, found: Explanation) -> tuple[Gap, float]:
         """The gap that is left on held-out data, and the share of its excess that is closed.

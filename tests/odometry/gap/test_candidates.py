@@ -1,5 +1,7 @@
 """Effects of the catalogue that are offered, by what was recorded."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from odometry.effects.contact_effects import InertiaByContact
@@ -32,6 +34,13 @@ def test_forms_of_contact_forces_are_apart(scenes, known):
     assert {e.form for e in slow} == {"contact"}
     assert "contact" not in {e.form for e in quick}
     assert [e.key for e in slow if e.name == "slope_sliding"]
+
+
+@pytest.mark.parametrize(("lateral_m_s2", "count"), [(0.05, 0), (0.13, 2)])
+def test_inertia_by_contacts_needs_no_fast_turn(known, lateral_m_s2, count):
+    """Mass follows late in slow turns, too; of a drive that hardly turns nothing is known."""
+    recorded = SimpleNamespace(base=known.base, lateral_m_s2=lateral_m_s2)
+    assert len(InertiaByContact.offered(recorded)) == count
 
 
 def test_a_robot_has_one_number_of_contacts():

@@ -15,16 +15,19 @@ from odometry.effects.residual import Residual
 from odometry.effects.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.terrain import NewIcrs
 from odometry.effects.time_offset import TimeOffset
-from odometry.gap.answer import answer, equivalent
+from odometry.gap.answer import answer
 from odometry.gap.answer.equivalent import equivalents
 from odometry.gap.answer.result import Equivalent
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
+from odometry.gap.name import near_rivals
 from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.simulate import residuals
 from odometry.models.inputs import Inputs
 
+SMOOTH = Residual("speed", (("v_x", 0),), "", (0.0, 1.0))
 SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])
 
 
@@ -58,7 +61,7 @@ def judged(effect, evidence, gain):
 def beside(monkeypatch):
     """Equivalents of the first of candidates, on speeds without noise."""
     silent = np.zeros(PIECES)
-    monkeypatch.setattr(equivalent, "noise_of_windows", lambda fits, _: [silent for _ in fits])
+    monkeypatch.setattr(near_rivals, "noise_of_windows", lambda fits, _: [silent for _ in fits])
 
     return lambda *candidates: equivalents(explained_by(*candidates), (), Alone(), GapConfig())
 
@@ -70,7 +73,7 @@ def names_beside_noise(monkeypatch):
     def names(noises, *candidates):
         made = dict(zip((id(one.fitted) for one in candidates), noises, strict=True))
         monkeypatch.setattr(
-            equivalent,
+            near_rivals,
             "noise_of_windows",
             lambda fits, _: [np.full(PIECES, made[id(fit)]) for fit in fits],
         )
@@ -96,6 +99,16 @@ def test_one_of_near_evidence_is_equivalent(names_beside):
     first = judged(TimeOffset(), 100.0, 104.0)
     assert names_beside(first, judged(HeadingOffset(), 95.0, 103.0)) == ["heading_offset"]
     assert names_beside(first, judged(HeadingOffset(), 93.0, 103.0)) == []
+
+
+@pytest.mark.usefixtures("beside")
+@pytest.mark.parametrize(("evidence", "decided"), [(93.0, True), (95.0, False)])
+def test_a_name_is_not_decided_beside_a_smooth_function_where_another_is_as_near(evidence, decided):
+    first, rival = judged(TimeOffset(), 100.0, 104.0), judged(HeadingOffset(), evidence, 103.0)
+    found = explained_by(first, rival).with_step(judged(SMOOTH, 50.0, 60.0))
+    reason = undecided(found, Alone(), GapConfig())
+    others = "heading_offset would explain as much, and something unknown is left beside each"
+    assert reason == ("" if decided else others)
 
 
 @pytest.mark.parametrize(("gain", "expected"), [(51.0, []), (53.0, ["heading_offset"])])

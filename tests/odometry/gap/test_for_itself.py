@@ -24,6 +24,20 @@ def explanation(cost, *effects):
     return Costing(cost, tuple(SimpleNamespace(effect=one, fitted=None) for one in effects), ())
 
 
+def stood(monkeypatch, found, alone, undecided):
+    """What stands, and why others do not, where `alone` is grown and a name is `undecided`."""
+    monkeypatch.setattr("odometry.gap.name.accepted_effects.grown", lambda *_: alone)
+    monkeypatch.setattr("odometry.gap.name.accepted_effects.undecided", lambda *_: undecided)
+    refused = {}
+    search = SimpleNamespace(
+        fitter=None,
+        config=None,
+        refuse=lambda effect, reason: refused.update({effect.name: reason}),
+        _standing=lambda found, _: replace(found),
+    )
+    return Standing._for_itself(search, found, ()), refused
+
+
 @pytest.mark.parametrize(
     ("effects", "alone", "expected"),
     [
@@ -39,13 +53,18 @@ def explanation(cost, *effects):
 def test_it_stands_by_what_it_does_for_itself(monkeypatch, effects, alone, expected):
     found, (cost, count) = explanation(100.0, *effects), alone
     smooth = explanation(cost, *SMOOTH[:count])
-    monkeypatch.setattr("odometry.gap.name.accepted_effects.grown", lambda *_: smooth)
-    refused = {}
-    search = SimpleNamespace(
-        refuse=lambda effect, reason: refused.update({effect.name: reason}),
-        _standing=lambda found, _: replace(found),
-    )
-    left = Standing._for_itself(search, found, ())
+    left, refused = stood(monkeypatch, found, smooth, "")
     assert left.effects[0].name == expected
     why = "a smooth function of curvature explains more in its place"
     assert refused == ({"inertia": why} if expected == "unknown" else {})
+
+
+@pytest.mark.parametrize("name", [InertiaByIndices(), InertiaByContact()])
+def test_it_does_not_stand_where_others_would_as_well(monkeypatch, name):
+    """Whatever the smooth functions alone cost."""
+    smooth = explanation(200.0, *SMOOTH)
+    left, refused = stood(monkeypatch, explanation(100.0, name, SMOOTH[0]), smooth, "others would")
+    assert left.names == smooth.names
+    assert refused == {"inertia": "others would"}
+    left, _ = stood(monkeypatch, explanation(100.0, name), smooth, "others would")
+    assert left.names == ("inertia",)
