@@ -14,6 +14,7 @@ from terrain.classification.trained import Classifier
 
 # Of the light of training. Runs of photographs held out, of terrain that is known, lie within.
 USUAL_LIGHT = 0.75, 1.33
+GREY = 0.01  # of white: a mean is taken as no nearer to black or white
 BY_LIGHT = "it would have another name in the light of the training photographs"
 
 
@@ -26,8 +27,9 @@ def unless_by_light(
     """The answers, ``unknown`` where the name is another one once the light is that of training.
 
     In little light every terrain looks like the dark ones that are known, and each image alone is
-    like a photograph of these. Nothing gets a name by this. A classifier that takes the statistics
-    of the run itself is asked nothing.
+    like a photograph of these. Light acts as a factor of grey, an exposure or a camera's curve as a
+    power of it: the name has to stand by both. Nothing gets a name by this. A classifier that
+    takes the statistics of the run itself is asked nothing.
 
     Parameters
     ----------
@@ -43,15 +45,27 @@ def unless_by_light(
     is_usual = USUAL_LIGHT[0] < likeness.light < USUAL_LIGHT[1]
     if is_usual or isinstance(classifier, OwnStatisticsClassifier):
         return list(answers)
-    grey = np.clip(np.rint(np.arange(256) / likeness.light), 0, 255).astype(np.uint8)
     return [
         answer
-        if answer.label == UNKNOWN or answer.label == _likeliest(classifier, grey[image])
+        if answer.label == UNKNOWN
+        or all(answer.label == _likeliest(classifier, of) for of in _relit(image, likeness.light))
         else replace(answer, label=UNKNOWN, reason=BY_LIGHT)
         for image, answer in zip(images, answers, strict=True)
     ]
 
 
+def _relit(image: ByteImage, light: float) -> tuple[ByteImage, ByteImage]:
+    """An image in the light of training, its grey times a factor, and to a power."""
+    grey = np.arange(256) / 255
+    mean = np.clip(image.mean() / 255, GREY, 1 - GREY)
+    power = np.log(np.clip(mean / light, GREY, 1 - GREY)) / np.log(mean)
+    factor, curve = (
+        np.clip(np.rint(255 * of), 0, 255).astype(np.uint8) for of in (grey / light, grey**power)
+    )
+    return factor[image], curve[image]
+
+
 def _likeliest(classifier: Classifier, image: ByteImage) -> str:
     (answer,) = classifier.classify([image])
-    return max(answer.probabilities, key=lambda name: answer.probabilities[name])
+    of = answer.probabilities
+    return max(of, key=lambda name: of[name], default=answer.label)

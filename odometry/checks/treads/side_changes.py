@@ -129,7 +129,7 @@ def _changes(evidence: Evidence, turns: Turns) -> Iterator[tuple[float, str]]:
 
 
 def _of_one_side(
-    turns: Turns, rows: tuple[BoolArray, BoolArray, BoolArray], when: str, else_: str
+    turns: Turns, rows: tuple[BoolArray, BoolArray, BoolArray], when: str, otherwise: str
 ) -> Iterator[tuple[float, str]]:
     changing_m = [
         np.where(rows[side], way_m, 0.0) for side, way_m in enumerate((turns.left_m, turns.right_m))
@@ -150,7 +150,7 @@ def _of_one_side(
             yield (
                 left,
                 f"a metre of the {('left', 'right')[side]} tread turns the robot {1 + change:.2f} "
-                f"times as much {when} as {else_}, one of the other tread as much",
+                f"times as much {when} as {otherwise}, one of the other tread as much",
             )
 
 

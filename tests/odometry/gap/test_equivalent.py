@@ -22,15 +22,11 @@ from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.name import near_rivals
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.simulate import residuals
 from odometry.models.inputs import Inputs
 
-SMOOTH = Residual("speed", (("v_x", 0),), "", (0.0, 1.0))
 SHIFT = np.array([0.05, 0.05, -0.3, 0.0, 0.0])
-
-
 PIECES = 30
 
 
@@ -99,16 +95,6 @@ def test_one_of_near_evidence_is_equivalent(names_beside):
     first = judged(TimeOffset(), 100.0, 104.0)
     assert names_beside(first, judged(HeadingOffset(), 95.0, 103.0)) == ["heading_offset"]
     assert names_beside(first, judged(HeadingOffset(), 93.0, 103.0)) == []
-
-
-@pytest.mark.usefixtures("beside")
-@pytest.mark.parametrize(("evidence", "decided"), [(93.0, True), (95.0, False)])
-def test_a_name_is_not_decided_beside_a_smooth_function_where_another_is_as_near(evidence, decided):
-    first, rival = judged(TimeOffset(), 100.0, 104.0), judged(HeadingOffset(), evidence, 103.0)
-    found = explained_by(first, rival).with_step(judged(SMOOTH, 50.0, 60.0))
-    reason = undecided(found, Alone(), GapConfig())
-    others = "heading_offset would explain as much, and something unknown is left beside each"
-    assert reason == ("" if decided else others)
 
 
 @pytest.mark.parametrize(("gain", "expected"), [(51.0, []), (53.0, ["heading_offset"])])

@@ -45,7 +45,7 @@ def test_what_looks_like_a_dark_terrain_in_little_light_has_no_name():
 def test_a_name_that_stands_in_the_light_of_training_stays():
     found, greys = answer_of(DARK, IMAGE // 4)
     assert found.label == "mud"
-    assert greys == [10, 25]
+    assert greys == [10, 25, 25]
     bright = replace(DARK, light=2.0)
     assert answer_of(bright, 5 * IMAGE)[0].label == "snow"
     assert answer_of(bright, 3 * IMAGE)[0].label == "unknown"
@@ -66,6 +66,26 @@ def test_nothing_is_asked_in_other_runs(likeness):
     found, greys = answer_of(likeness)
     assert found.label == "mud"
     assert greys == [40]
+
+
+@pytest.mark.parametrize(
+    ("others", "label"),
+    [(["mud", "mud"], "mud"), (["mud", "snow"], "unknown"), (["snow"], "unknown")],
+)
+def test_a_name_has_to_stand_by_a_factor_and_by_a_power(others, label):
+    shown, mixed = [], np.repeat(np.array([[40], [80]], np.uint8), 8, axis=1)
+
+    class Says:
+        def classify(self, images):
+            shown.append(images[0][:, 0].tolist())
+            return [named("", float(others[len(shown) - 1] == "mud"))]
+
+    (found,) = unless_by_light(Says(), [mixed], [named("mud", 1.0)], DARK)
+    assert found.label == label
+    # the mean of 60 becomes 150
+    power = np.log(150 / 255) / np.log(60 / 255)
+    expected = [[100, 200], np.rint(255 * (np.array([40, 80]) / 255) ** power).tolist()]
+    assert shown == expected[: len(others)]
 
 
 def test_nothing_gets_a_name_by_another_light():

@@ -192,10 +192,20 @@ class Doubting(ByBrightness):
 @pytest.mark.parametrize(("beyond", "first"), [(0.9, "mud"), (1.1, "unknown")])
 def test_doubtful_names_are_unknown_where_the_images_of_the_run_are_unlike(watch, beyond, first):
     watched = watch([DARK, BRIGHT, BRIGHT], Doubting())
-    likeness = Likeness(20, 0.5, 0.5, (), beyond=beyond)
+    labels = labels_of_a_run(watched, Likeness(20, 0.5, 0.5, (), beyond=beyond))
+    assert labels == [first, "snow", "snow"]
+
+
+@pytest.mark.parametrize(("light", "first"), [(0.8, "mud"), (0.2, "unknown")])
+def test_names_of_another_light_are_unknown_where_they_depend_on_it(watch, light, first):
+    watched = watch([DARK, BRIGHT, BRIGHT])
+    labels = labels_of_a_run(watched, Likeness(20, 0.5, 0.5, (), beyond=1.1, light=light))
+    assert labels == [first, "snow", "snow"]
+
+
+def labels_of_a_run(watched, likeness):
     watched.watcher.seen = watched.watcher._labeller.seen = SimpleNamespace(
         add=lambda _: None, likeness=likeness, weighed=lambda _, probabilities: probabilities
     )
     drive(watched)
-    labels = [image_label.label for image_label in watched.watcher.image_labels]
-    assert labels == [first, "snow", "snow"]
+    return [image_label.label for image_label in watched.watcher.image_labels]
