@@ -24,7 +24,7 @@ from terrain.images import read_image
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
-KEPT = 200  # statistics of the latest images
+KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one light
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
 WORTH_OF_UNLIKE = 0.3
 LOST_DETAILS = "the image lost details of the terrain: fog, a wet lens, another focus"
@@ -59,6 +59,14 @@ class RunLikeness:
         if self._training is None:
             return None
         return self._training.summary(np.array(self._looks), np.array(self._differences))
+
+    @property
+    def latest(self) -> Likeness | None:
+        """Of the last ten images, where the light changes along the way."""
+        if self._training is None:
+            return None
+        looks, differences = list(self._looks)[-LATEST:], list(self._differences)[-LATEST:]
+        return self._training.summary(np.array(looks), np.array(differences))
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
         """Probabilities of each terrain by a label; closer to chance where images are unlike.
@@ -155,7 +163,8 @@ class ImageLabeller:
         self._has_answered = True
         likeness = self.seen.likeness
         answers = [answer.unless_doubtful(likeness) for answer in answers]
-        answers = unless_by_light(self.classifier, views, answers, likeness)
+        for of in (likeness, self.seen.latest):
+            answers = unless_by_light(self.classifier, views, answers, of)
         return answered(frame.stamp_s, name, region, answers)
 
     def _name(self, image: Path | ByteImage) -> str:

@@ -190,6 +190,16 @@ def test_labels_of_unlike_images_count_less(classifier, training_patches):
     assert unlike.weighed("boards", {})["boards"] == pytest.approx(0.65)
 
 
+def test_the_last_images_show_a_light_that_changed(classifier, training_patches):
+    run = RunLikeness(classifier)
+    for image in [*training_patches[0][::7], *[dark // 3 for dark in training_patches[0][:10]]]:
+        run.add([image])
+    assert run.latest.images == 10
+    assert run.latest.light == pytest.approx(1 / 3, rel=0.2)
+    assert run.latest.is_unlike
+    assert run.likeness.light == pytest.approx((1 / 3) ** (10 / run.likeness.images), rel=0.1)
+
+
 @pytest.mark.parametrize("power", [0.4, 2.5])
 def test_another_exposure_is_noticed_among_textures_alike(training, power):
     """Also where ranks among all alone would not show it."""

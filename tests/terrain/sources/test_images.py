@@ -196,16 +196,23 @@ def test_doubtful_names_are_unknown_where_the_images_of_the_run_are_unlike(watch
     assert labels == [first, "snow", "snow"]
 
 
-@pytest.mark.parametrize(("light", "first"), [(0.8, "mud"), (0.2, "unknown")])
-def test_names_of_another_light_are_unknown_where_they_depend_on_it(watch, light, first):
+@pytest.mark.parametrize(
+    ("light", "latest", "first"), [(0.8, 0.8, "mud"), (0.2, 0.8, "unknown"), (0.8, 0.2, "unknown")]
+)
+def test_names_of_another_light_are_unknown_where_they_depend_on_it(watch, light, latest, first):
     watched = watch([DARK, BRIGHT, BRIGHT])
-    labels = labels_of_a_run(watched, Likeness(20, 0.5, 0.5, (), beyond=1.1, light=light))
-    assert labels == [first, "snow", "snow"]
+    of_all, of_latest = (
+        Likeness(20, 0.5, 0.5, (), beyond=1.1, light=each) for each in (light, latest)
+    )
+    assert labels_of_a_run(watched, of_all, of_latest) == [first, "snow", "snow"]
 
 
-def labels_of_a_run(watched, likeness):
+def labels_of_a_run(watched, likeness, latest=None):
     watched.watcher.seen = watched.watcher._labeller.seen = SimpleNamespace(
-        add=lambda _: None, likeness=likeness, weighed=lambda _, probabilities: probabilities
+        add=lambda _: None,
+        likeness=likeness,
+        latest=latest,
+        weighed=lambda _, probabilities: probabilities,
     )
     drive(watched)
     return [image_label.label for image_label in watched.watcher.image_labels]
