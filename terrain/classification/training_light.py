@@ -28,8 +28,8 @@ def unless_by_light(
 
     In little light every terrain looks like the dark ones that are known, and each image alone is
     like a photograph of these. Light acts as a factor of grey, an exposure or a camera's curve as a
-    power of it: the name has to stand by both. Nothing gets a name by this. A classifier that
-    takes the statistics of the run itself is asked nothing.
+    power of it: the name has to be the same by both. This only removes names. Answers of a
+    classifier that is standardised by the run itself stay as they are.
 
     Parameters
     ----------

@@ -35,7 +35,8 @@ class TerrainWatcher:
     classifier : Classifier
         Fitted.
     initial : str
-        The terrain in force until the first switch.
+        The terrain in force until the first switch, as long as labels support it; `unknown` where
+        nobody named one.
     region : RegionConfig
     switch : SwitchConfig
     folder : Path, optional

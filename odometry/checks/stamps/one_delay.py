@@ -13,10 +13,20 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag, Signal
 from odometry.checks.stamps.late_stamps import CLEARLY, CONSTANTS_S, NAMES
-from odometry.checks.stamps.timing import headings_by_sensor, pose_period_s
+from odometry.checks.stamps.rates_by_delay import (
+    GRID_S,
+    MOST_TIMES,
+    PARTS,
+    STEP_S,
+    centred,
+    left_by,
+    rate,
+    two_delays,
+    width_s,
+)
+from odometry.checks.stamps.timing import headings_by_sensor
 
-GRID_S, STEP_S, REACH_S = 0.05, 0.02, 0.6  # delays around the lag that was found
-LEAST_WIDTH_S = 0.3  # over which rates are taken
+REACH_S = 0.6  # of delays around the lag that was found
 LEAST_LAG_S = 0.1  # with less there is nothing to tell a delay from a filter
 FILTER_S = 6.0  # time constants after which nothing is left of a value
 # Shares of the squares that one delay leaves, or that delay over a wider window. Of 130 pairs of
@@ -24,10 +34,8 @@ FILTER_S = 6.0  # time constants after which nothing is left of a value
 # a filter of most pairs with one 0.02 to 0.86, and two delays 0.25 to 0.70 of clocks that were set
 # (simulations with random drives and noise).
 SLOWER, STEPS = 0.9, 0.8
-MOST_TIMES = 8000  # at which rates are compared
 WIDER = (2.0, 4.0)  # times that width, over which noise of the early sensor is less as well
 LEAST_LEFT = 1e-3  # of the squared turns: with less one delay explains all there is
-PARTS, LEAST_PARTS = 100, 5  # of the recording, between which a clock may be set
 
 
 @dataclass(frozen=True)
@@ -97,9 +105,7 @@ def answers(
         if sensor not in (first, second) or abs(lag.seconds) < LEAST_LAG_S:
             continue
         late, early = (first, second) if lag.seconds > 0 else (second, first)
-        period_s = pose_period_s(evidence) if "pose" in (late, early) else 0.0
-        width_s = max(LEAST_WIDTH_S, 2 * period_s, 2 * evidence.period_s)
-        found = _answer(evidence, (late, early), signals, abs(lag.seconds), width_s)
+        found = _answer(evidence, (late, early), signals, abs(lag.seconds))
         if found is not None:
             yield found
 
@@ -114,20 +120,20 @@ def _answer(
     pair: tuple[str, str],
     signals: Mapping[str, Signal],
     lag_s: float,
-    width_s: float,
 ) -> Answer | None:
     late, early = (signals[name] for name in pair)
+    over_s = width_s(evidence, pair)
     grid_s = np.arange(evidence.stamps_s[0], evidence.stamps_s[-1], GRID_S)
     some = slice(round(FILTER_S / GRID_S), None, 1 + len(grid_s) // MOST_TIMES)
     at_s = grid_s[some]
     delays_s = lag_s + np.arange(-REACH_S, REACH_S + STEP_S / 2, STEP_S)
     by_delay, *wider = (
-        np.stack([rate(early, at_s - delay_s, times * width_s) for delay_s in delays_s])
+        np.stack([rate(early, at_s - delay_s, times * over_s) for delay_s in delays_s])
         for times in (1.0, *WIDER)
     )
-    now = np.nan_to_num(rate(early, grid_s, width_s))
+    now = np.nan_to_num(rate(early, grid_s, over_s))
     by_filter = np.stack([_filtered(now, constant_s)[some] for constant_s in CONSTANTS_S])
-    rows = [rate(late, at_s, width_s)[None], by_delay, by_filter, *wider]
+    rows = [rate(late, at_s, over_s)[None], by_delay, by_filter, *wider]
     known = np.all([np.isfinite(of).all(axis=0) for of in rows], axis=0)
     if known.sum() < PARTS:
         return None
@@ -152,43 +158,7 @@ def _answer(
     )
 
 
-def centred(rates: FloatArray) -> FloatArray:
-    """Rates (..., N) less their means, as of a bias."""
-    return np.asarray(rates - rates.mean(axis=-1, keepdims=True))
-
-
-def rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
-    """Rates (N,) of a heading over a width around some stamps (N,)."""
-    return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
-
-
 def _filtered(rates: FloatArray, constant_s: float) -> FloatArray:
     """Rates (N,) on the grid through a lag of first order."""
     kernel = np.exp(-np.arange(0.0, FILTER_S * constant_s, GRID_S) / constant_s)
     return np.convolve(rates, kernel / kernel.sum())[: len(rates)]
-
-
-def left_by(measured: FloatArray, by: FloatArray) -> FloatArray:
-    """Squares (D,) of measured rates (N,) that each of some rates (D, N) leaves, times a gain."""
-    explained = (by @ measured) ** 2 / np.maximum(np.sum(by**2, axis=1), 1e-300)
-    return np.asarray(np.sum(measured**2) - explained)
-
-
-def two_delays(squares: FloatArray) -> tuple[float, int, int, float]:
-    """What the best two rows of squares (D, N) leave, one before and one after the best moment.
-
-    Returns
-    -------
-    left : float
-    before, after : int
-        Rows.
-    share : float
-        Of the columns, that are before the moment.
-    """
-    edges = np.linspace(0, squares.shape[1], PARTS + 1).astype(int)[:-1]
-    before = np.cumsum(np.add.reduceat(squares, edges, axis=1), axis=1)
-    after = before[:, -1:] - before
-    left = (before.min(axis=0) + after.min(axis=0))[LEAST_PARTS:-LEAST_PARTS]
-    part = int(np.argmin(left)) + LEAST_PARTS
-    rows = int(np.argmin(before[:, part])), int(np.argmin(after[:, part]))
-    return float(left.min()), *rows, (part + 1) / PARTS

@@ -6,9 +6,8 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
 from odometry.checks.stamps.late_stamps import CLEARLY
-from odometry.checks.stamps.one_delay import (
+from odometry.checks.stamps.rates_by_delay import (
     GRID_S,
-    LEAST_WIDTH_S,
     MOST_TIMES,
     PARTS,
     STEP_S,
@@ -16,8 +15,9 @@ from odometry.checks.stamps.one_delay import (
     left_by,
     rate,
     two_delays,
+    width_s,
 )
-from odometry.checks.stamps.timing import headings_by_sensor, pose_period_s
+from odometry.checks.stamps.timing import headings_by_sensor
 
 GROWTHS = np.linspace(0.6, 1.4, 9)  # of the growth that was found
 AROUND_S = 0.3  # of the lags that were found, at either end of the recording
@@ -68,16 +68,15 @@ def _left_by_delays(
     Delays are those that a lag which grows has in the recording; None where too little is known.
     """
     signals = headings_by_sensor(evidence)
-    period_s = pose_period_s(evidence) if "pose" in pair else 0.0
-    width_s = max(LEAST_WIDTH_S, 2 * period_s, 2 * evidence.period_s)
+    over_s = width_s(evidence, pair)
     begin_s, end_s = evidence.stamps_s[[0, -1]]
     every = 1 + int((end_s - begin_s) / GRID_S) // MOST_TIMES
     at_s = np.arange(begin_s, end_s, every * GRID_S)
     reach_s = abs(lag.drift) * (end_s - begin_s) / 2 + AROUND_S
     delays_s = lag.seconds + np.arange(-reach_s, reach_s + STEP_S, STEP_S)
     late, early = (signals[name] for name in pair)
-    by_delay = np.stack([rate(early, at_s - delay_s, width_s) for delay_s in delays_s])
-    measured = rate(late, at_s, width_s)
+    by_delay = np.stack([rate(early, at_s - delay_s, over_s) for delay_s in delays_s])
+    measured = rate(late, at_s, over_s)
     known = np.isfinite(by_delay).all(axis=0) & np.isfinite(measured)
     if known.sum() < PARTS:
         return None

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.least_squares import variances
-from odometry.checks.treads.side_changes import Turns, turns_by_treads
+from odometry.checks.treads.turns_by_treads import Turns, turns_by_treads
 
 STANDING = 0.01  # of the ordinary fastest speed
 LONGEST_S = 3.0  # before a tread reads the other direction, in which it may move unread

@@ -69,8 +69,8 @@ def _or_stands(evidence: Evidence, name: str, spans: list[tuple[float, float]]) 
     if not all(any(of.pivots(span, side) for of in sensors) for span in spans):
         return ""
     return (
-        "this tread stands or is slow, and slow speeds read zero: the other one alone explains the "
-        "turns of these times"
+        "this tread is stationary or slow, and slow speeds read zero: the other one alone explains "
+        "the turns of these times"
     )
 
 

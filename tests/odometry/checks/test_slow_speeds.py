@@ -124,7 +124,7 @@ def test_an_encoder_whose_tread_may_stand_is_not_surely_lost():
     run = drive(speed, np.where(arc, 0.65 / WIDTH_M * right, 0.5 * np.sin(at_s / 1.7)))
     (found,) = check_recording(held(run, "v_left", 60, 75, 0.0)).at(Level.WARNING)
     assert found.name == "stuck_encoder"
-    assert "this tread stands or is slow" in found.cause
+    assert "this tread is stationary or slow" in found.cause
 
 
 @pytest.mark.parametrize("sensors", SENSORS)
