@@ -74,9 +74,13 @@ def uneven_yaw(evidence: Evidence) -> str:
 
 
 def uneven_map(evidence: Evidence) -> str:
-    """Where a metre of the treads is surely farther at one place of the map than at others."""
+    """Where a metre of the treads is surely farther at one place of the map than at others.
+
+    Beside a way that goes with the turn: ICRs that are not symmetric add it in the lobes of a
+    figure eight.
+    """
     m = evidence.motion
-    plain = evidence.forward_by_mean
+    plain = relation(evidence.forward_m, m.mean_m, m.difference_m)
     if evidence.heading is None or plain is None:
         return ""
     found = _uneven(
@@ -87,6 +91,7 @@ def uneven_map(evidence: Evidence) -> str:
         ),
         evidence.forward_m,
         m.mean_m,
+        m.difference_m,
         most=PLACES_LIKE,
     )
     return f"a metre of tread travel moves the robot by {found}" if found else ""
@@ -95,7 +100,8 @@ def uneven_map(evidence: Evidence) -> str:
 def _left_by(evidence: Evidence, first: BoolArray) -> float:
     """Share of the way that is left by one factor for some of the windows (K,), one for others."""
     m = evidence.motion
-    fit = relation(evidence.forward_m, *(np.where(of, m.mean_m, 0.0) for of in (first, ~first)))
+    ways_m = (np.where(of, m.mean_m, 0.0) for of in (first, ~first))
+    fit = relation(evidence.forward_m, *ways_m, m.difference_m)
     return np.inf if fit is None else 1 - fit.explained
 
 

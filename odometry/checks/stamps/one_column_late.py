@@ -130,11 +130,13 @@ def _shifts(evidence: Evidence, sensor: MeasuredTurns) -> Shifts | None:
 def _squares_left(left: FloatArray, right: FloatArray, turns: FloatArray) -> FloatArray:
     """Squares (S, S) that each shift of the left (S, K) and the right column (S, K) leaves.
 
-    Least squares by the normal equations of two columns.
+    Least squares by the normal equations of two columns, or of the better one where both are one
+    motion: on a drive that only spins they explain what one of them does.
     """
     ll, rr, lr = np.sum(left**2, axis=1)[:, None], np.sum(right**2, axis=1)[None, :], left @ right.T
     lt, rt = (left @ turns)[:, None], (right @ turns)[None, :]
     area = ll * rr - lr**2
     apart = area > LEAST_ANGLE * ll * rr
     explained = (lt**2 * rr - 2 * lt * rt * lr + rt**2 * ll) / np.where(apart, area, 1.0)
-    return np.asarray(np.sum(turns**2) - np.where(apart, explained, 0.0))
+    one = np.maximum(lt**2 / np.maximum(ll, 1e-300), rt**2 / np.maximum(rr, 1e-300))
+    return np.asarray(np.sum(turns**2) - np.where(apart, explained, one))

@@ -1,0 +1,49 @@
+"""Drives without a fault that once had a finding: lobes of a figure eight, a steep slope."""
+
+import numpy as np
+
+from odometry.checks.evidence.constancy import uneven_map
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
+from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import positions, put
+from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
+from tests.odometry.checks.test_other_robots import PERIOD_S, drive
+
+AT_S = PERIOD_S * np.arange(4000)
+
+
+def only(run):
+    (found,) = check_recording(run).at(Level.WARNING)
+    return found
+
+
+def eight():
+    """Lobes to the left and to the right, by ICRs of which the right one is nearer."""
+    left, right = np.where((AT_S % 20 < 10)[:, None], [0.2, 1.0], [1.0, 0.2]).T
+    near, far = -0.25, 0.65
+    turn = (right - left) / (far - near)
+    run = drive((right * far - left * near) / (far - near), turn)
+    noise = 1 + 0.01 * np.random.default_rng(1).standard_normal((2, len(left)))
+    return put(run, "odometry", v_left=left * noise[0], v_right=right * noise[1])
+
+
+def test_lobes_of_unlike_icrs_are_no_uneven_map():
+    assert uneven_map(Evidence(eight())) == ""
+
+
+def sliding(downhill=1.0, tilt=True):
+    """A robot that slides by 0.3 m/s along y on a slope of 12 degrees, which goes down along y."""
+    run = turning_all_round()
+    run = positions(run, lambda x, y: (x, y + downhill * 0.3 * run.pose.stamps_s))
+    heading = np.interp(AT_S, run.pose.stamps_s, np.unwrap(run.pose["yaw"]))
+    slope = np.radians(12)
+    pitch = np.arctan(np.tan(slope) * np.sin(heading))
+    roll = -np.arcsin(np.sin(slope) * np.cos(heading))
+    return put(run, "odometry", roll=roll, pitch=pitch) if tilt else run
+
+
+def test_sliding_down_a_slope_is_no_fault_and_up_it_is():
+    assert warnings(sliding()) == []
+    assert "whatever the treads do" in only(sliding(downhill=-1.0)).seen
+    assert "slides down a slope" in only(sliding(tilt=False)).seen
