@@ -27,10 +27,18 @@ HALF = 0.5  # of the recording, that parts are at least: with more cuts it is co
 MOST_PARTS = 6  # the longest ones are compared
 # Sensors of different times seem to slip, to jump and to be far from the centre; one side of
 # another scale seems to scale the way; treads seem to stand where their scale is another elsewhere;
-# one side that loses samples seems to have another scale.
+# one side that loses samples seems to have another scale; yaw of another unit seems to jump.
 TRIED_ALONE = frozenset(
-    {"pose_late", "clocks_apart", "gyroscope_late", "treads_late", "treads_are_commands"}
+    {
+        "pose_late",
+        "clocks_apart",
+        "clock_set",
+        "gyroscope_late",
+        "treads_late",
+        "treads_are_commands",
+    }
     | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
+    | {"yaw_in_degrees"}
 )
 
 Found = Callable[[Evidence], Iterator[Finding]]

@@ -38,6 +38,7 @@ from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
 from odometry.checks.stamps.stamp_pace import stamp_pace
 from odometry.checks.stamps.stamps import stamps, unreadable_stamps
+from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from odometry.checks.treads.blocked_turns import blocked_turns
 from odometry.checks.treads.equal_in_turns import equal_in_turns
 from odometry.checks.treads.one_motion import one_motion
@@ -90,6 +91,7 @@ CHECKS: tuple[Check, ...] = (
     tread_samples,
     treads,
     gaps,
+    stepping_clocks,
     explained_lags,
     late_positions,
     poses,

@@ -22,6 +22,13 @@ OF_LOST = frozenset(
     | {"tread_offset", "treads_unequal", "treads_late", "treads_are_commands"}
 )
 
+# Where a fifth of the rows of a file and more had the stamp of another row, those that are left are
+# no more of their times.
+OF_REPEATED_STAMPS = OF_OTHER_TIMES | {
+    *("poses_unrelated", "pose_outliers", "frozen_poses", "dropped_speeds", "smoothed_poses"),
+    *("tread_late", "treads_held", "odometry_gap", "interpolated_poses", "yaw_jumps"),
+}
+
 # Cause: what follows from it.
 CONSEQUENCES: dict[str, frozenset[str]] = {
     "latitude_longitude": POSES | YAW | {"positions_mirrored", "yaw_reversed", "coarse_positions"},
@@ -92,7 +99,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"}
     | {"one_motion"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
-    "uneven_stamps": frozenset({"odometry_gap"}),
+    "uneven_stamps": frozenset({"odometry_gap", "clock_set"}),
     "tread_late": OF_OTHER_TIMES | {"yaw_jumps"},
     "treads_held": OF_OTHER_TIMES,
     "coarse_yaw": YAW
@@ -107,7 +114,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
     | {"far_sensor", "track_width", "treads_unequal", "tread_offset", "turn_blocked"},
     "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
-    "clock_set": frozenset({"pose_jumps", "slip", "scale"}),
+    "clock_set": frozenset({"pose_jumps", "yaw_jumps", "slip", "scale"}),
     "dropped_speeds": frozenset({"treads_not_proportional"}),
     "placeholder_speeds": frozenset({"treads_not_proportional", "absurd_speed", "dropped_speeds"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),
@@ -135,6 +142,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
             "yaw_jumps",
             "yaw_bent",
             "turns_at_rest",
+            "tread_unit",
         }
         | {"track_width", "slip_in_turns", "gyroscope_reversed", "pose_late", "gyroscope_late"}
     ),
@@ -202,6 +210,8 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     """The findings of which none explains another."""
     names = {finding.name for finding in findings}
     implied = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
+    if any(f.name == "repeated_stamps" and f.level is not Level.NOTE for f in findings):
+        implied |= OF_REPEATED_STAMPS
     if "stuck_encoder" in implied:
         implied.add("slow_speeds_zero")
     if names & NOT_CURVES:

@@ -90,6 +90,21 @@ def between(run: Run, begin_s: float, end_s: float) -> Run:
     return replace(run, odometry=part(run.odometry), pose=pose, imu=imu)
 
 
+def stamps_moved(table: str, after_s: float, by_s: float) -> Mend:
+    """Stamps of one table after one of them plus a constant, without rows that then overlap."""
+
+    def mend(run: Run) -> Run:
+        of = getattr(run, table)
+        stamps_s, later = of.stamps_s, of.stamps_s > after_s
+        new_s = stamps_s + np.where(later, by_s, 0.0)
+        kept = ~later | (new_s > after_s)
+        columns = {name: values[kept] for name, values in of.columns.items()}
+        rows = of.rows(np.flatnonzero(kept))
+        return replace(run, **{table: replace(rows, columns={**columns, "t": new_s[kept]})})
+
+    return mend
+
+
 def moved(forward_m: float, left_m: float, offset_rad: float) -> Mend:
     """Positions of a point so far behind and to the right of the measured one.
 

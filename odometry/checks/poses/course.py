@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.checks.evidence.course_offsets import offset_beside_arm_rad, parts_apart
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import CONSISTENT, Heading, headings
@@ -13,21 +14,16 @@ from odometry.checks.findings.undo import Mend, changed, times, yaw_plus
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
 LEAST_FORWARDS = 0.5
+FULL_DEGREES, FULL_GON = 360.0, 400.0
+WRAP, LEAST_WRAPS = 0.7, 3  # of a full turn; a robot turns less from row to row
+OTHER_TURN = 0.05  # by which the step of a wrap differs, in which the robot turns a little
 NEAR_90 = 5.0  # degrees: farther off, a sensor may be turned by another angle
 
 
 def course(evidence: Evidence) -> Iterator[Finding]:
     """Yaw in degrees, yaw off by a constant, positions mirrored."""
     if evidence.yaw_in_degrees:
-        yaw = evidence.run.pose["yaw"] if evidence.run.pose is not None else np.empty(0)
-        yield _finding(
-            "yaw_in_degrees",
-            f"yaw of pose.csv goes from {np.nanmin(yaw):.1f} to {np.nanmax(yaw):.1f}; its turns "
-            "and its course fit only when read as degrees",
-            "Yaw is in degrees",
-            "Convert yaw to radians",
-            changed("pose", "yaw", np.radians),
-        )
+        yield _in_degrees(evidence.run.pose["yaw"] if evidence.run.pose else np.empty(0))
     heading = evidence.heading
     if heading is None:
         return
@@ -43,6 +39,34 @@ def course(evidence: Evidence) -> Iterator[Finding]:
             "Exchange x and y, or negate y",
             times("pose", -1.0, "y"),
         )
+
+
+def _in_degrees(yaw: FloatArray) -> Finding:
+    """Yaw in degrees, or in another unit: where it wraps it steps by a full turn."""
+    steps = np.abs(np.diff(yaw[np.isfinite(yaw)]))
+    wraps = steps[steps > WRAP * FULL_DEGREES]
+    turn = float(np.median(wraps)) if len(wraps) else FULL_DEGREES
+    if turn < FULL_DEGREES and len(wraps) < LEAST_WRAPS:
+        turn = FULL_DEGREES  # a jump over the border is less; none is more
+    if abs(turn / FULL_GON - 1) < OTHER_TURN:
+        turn = FULL_GON
+    seen = f"yaw of pose.csv goes from {np.nanmin(yaw):.1f} to {np.nanmax(yaw):.1f}"
+    if abs(turn / FULL_DEGREES - 1) > OTHER_TURN:
+        return _finding(
+            "yaw_in_degrees",
+            f"{seen}, and steps by {turn:.0f} where it wraps",
+            f"Yaw counts {turn:.0f} to a full turn, not {FULL_DEGREES:.0f}"
+            + " (it is in gon)" * (turn == FULL_GON),
+            f"Convert: yaw times 2 pi / {turn:.0f}",
+            times("pose", 2 * np.pi / turn, "yaw"),
+        )
+    return _finding(
+        "yaw_in_degrees",
+        f"{seen}; its turns and its course fit only when read as degrees",
+        "Yaw is in degrees",
+        "Convert yaw to radians",
+        changed("pose", "yaw", np.radians),
+    )
 
 
 def _turns_agree(evidence: Evidence) -> bool:

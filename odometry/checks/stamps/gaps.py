@@ -17,8 +17,11 @@ FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
 TURNED_RAD = 0.3  # in a gap: the robot drove on, however little it moved
+LOST = "Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)"
 BEFORE, CLOSER = 40, 0.9  # rows before a gap, and their period as a share of the usual one
 CLOSER_ROWS = "; or their stamps are wrong: rows before it come closer together than elsewhere"
+BURST = 0.3  # of the mean time between rows, that the usual one has in bursts, or in changes
+MISSING = 0.5  # of the rows that gaps lack, which the whole file lacks at least
 STOOD = 0.3  # share of the motion at the held speed below which the robot stood: the clock was set
 
 
@@ -45,8 +48,7 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             lost,
             level=Level.NOTE if of_changes else Level.WARNING,
             reason=reason,
-            cause="Rows of odometry.csv are lost: a true gap (the logger or the bus stopped)"
-            + CLOSER_ROWS * any(_is_closer_before(evidence, begin_s) for begin_s, _ in lost),
+            cause=_why_lost(evidence, lost),
             remedy="Windows do not cross it; cut with --from and --to",
         )
     if clock:
@@ -101,6 +103,29 @@ def _finding(
         remedy,
         tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in spans_s),
     )
+
+
+def _why_lost(evidence: Evidence, lost_s: list[FloatArray]) -> str:
+    """Rows that are lost are missing in the file; rows whose stamps are wrong are elsewhere in it.
+
+    Where a stretch of stamps goes back, rows that are sorted by time lie between others.
+    """
+    lasts_s, period_s = np.diff(evidence.stamps_s), evidence.period_s
+    if period_s < BURST * evidence.duration_s / len(lasts_s):
+        return (
+            "Either rows come in bursts with stamps of arrival, or were logged as the speeds "
+            "change; or rows of odometry.csv are lost"
+        )
+    lacks_s = float(np.sum(lasts_s[lasts_s > 2 * period_s] - period_s))
+    if evidence.duration_s - len(lasts_s) * period_s < MISSING * lacks_s:
+        return (
+            f"Either the stamps are wrong: the file has the {len(lasts_s) + 1} rows that its time "
+            "asks for, some of them too close to others (stamps that went back and were sorted, a "
+            "clock that ran slow and was set); or rows of odometry.csv are lost, and others came "
+            "faster"
+        )
+    closer = any(_is_closer_before(evidence, begin_s) for begin_s, _ in lost_s)
+    return LOST + CLOSER_ROWS * closer
 
 
 def _is_closer_before(evidence: Evidence, begin_s: float) -> bool:

@@ -39,10 +39,13 @@ def step_of_lag(evidence: Evidence, pair: tuple[str, str], lag: Lag) -> tuple[st
     clearly : bool
         Whether the step explains them clearly better.
     """
-    found = _left_by_delays(evidence, pair, lag)
+    begin_s, end_s = evidence.stamps_s[[0, -1]]
+    reach_s = abs(lag.drift) * (end_s - begin_s) / 2 + AROUND_S
+    delays_s = lag.seconds + np.arange(-reach_s, reach_s + STEP_S, STEP_S)
+    found = left_by_delays(evidence, pair, delays_s)
     if found is None:
         return "", False
-    at_s, delays_s, squares = found
+    at_s, squares, _ = found
     middle_s = float(evidence.stamps_s[[0, -1]].mean())
     grown = np.inf
     for growth in GROWTHS:
@@ -60,20 +63,18 @@ def step_of_lag(evidence: Evidence, pair: tuple[str, str], lag: Lag) -> tuple[st
     return words, stepped < CLEARLY * grown
 
 
-def _left_by_delays(
-    evidence: Evidence, pair: tuple[str, str], lag: Lag
-) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Stamps (N,), delays (D,), and squares (D, N) of the rates that each delay leaves at each.
+def left_by_delays(
+    evidence: Evidence, pair: tuple[str, str], delays_s: FloatArray
+) -> tuple[FloatArray, FloatArray, float] | None:
+    """Stamps (N,), squares (D, N) of the rates that each delay leaves there, and squares of all.
 
-    Delays are those that a lag which grows has in the recording; None where too little is known.
+    None where too little is known.
     """
     signals = headings_by_sensor(evidence)
     over_s = width_s(evidence, pair)
     begin_s, end_s = evidence.stamps_s[[0, -1]]
     every = 1 + int((end_s - begin_s) / GRID_S) // MOST_TIMES
     at_s = np.arange(begin_s, end_s, every * GRID_S)
-    reach_s = abs(lag.drift) * (end_s - begin_s) / 2 + AROUND_S
-    delays_s = lag.seconds + np.arange(-reach_s, reach_s + STEP_S, STEP_S)
     late, early = (signals[name] for name in pair)
     by_delay = np.stack([rate(early, at_s - delay_s, over_s) for delay_s in delays_s])
     measured = rate(late, at_s, over_s)
@@ -83,4 +84,5 @@ def _left_by_delays(
     by_delay, measured = centred(by_delay[:, known]), centred(measured[known])
     best = by_delay[int(np.argmin(left_by(measured, by_delay)))]
     gain = float(best @ measured / (best @ best))
-    return at_s[known], delays_s, (measured - gain * by_delay) ** 2
+    squares = (measured - gain * by_delay) ** 2
+    return at_s[known], squares, float(np.sum(measured**2))

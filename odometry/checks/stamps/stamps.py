@@ -174,8 +174,9 @@ def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[
             "files_apart",
             Level.WARNING,
             f"only {100 * inside:.0f} % of the rows of {name} lie within the time of odometry.csv",
-            f"odometry.csv was cut, or {name} is of another recording or clock",
-            "Compare the first and the last stamps of the files",
+            f"Either odometry.csv was cut; or {name} is of another recording or clock, or its "
+            "stamps were made up (rows numbered at another rate than theirs)",
+            "Compare the first and the last stamps of the files, and the rate of their rows",
         )
 
 
@@ -193,8 +194,11 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
                 f"({100 * share:.3g} %; row {first}), and they were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
-                else "Stamps have too few digits, or two recordings were merged",
-                "Nothing to do" if share <= 0.2 else "Write stamps with more digits",
+                else "Stamps have too few digits, or two recordings were merged; the rows that are "
+                "left are not of their times, so that delays were not judged",
+                "Nothing to do"
+                if share <= 0.2
+                else "Write stamps with more digits, or one source alone, and check again",
             )
     if evidence.stamps_s[0] > EPOCH_S:
         yield Finding(

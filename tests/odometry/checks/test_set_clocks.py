@@ -1,15 +1,18 @@
 """Lags that grow evenly, and lags that change in one step."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
+from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.set_clocks import step_of_lag
 from tests.odometry.checks.faulty import pose_stamps
+from tests.odometry.checks.test_confirmed_causes import warnings
 from tests.odometry.checks.test_one_delay import stepping
 
 
@@ -41,3 +44,18 @@ def test_clocks_that_run_apart_keep_their_name(seed):
     (found,) = check_recording(run).findings
     assert found.name == "clocks_apart"
     assert found.cause.startswith("Clocks run apart")
+
+
+@pytest.mark.parametrize("step_s", [0.5, -0.6, 1.5])
+def test_a_clock_that_was_set_is_named_and_undone(step_s):
+    """No jump of the poses that it makes is named beside it."""
+    run = pose_stamps(stepping(), lambda t: t + step_s * (t > 80))
+    if step_s < 0:
+        kept = np.flatnonzero(
+            (run.pose["t"] > 80) | (np.arange(len(run.pose)) * 0.1 <= 80 + step_s)
+        )
+        run = replace(run, pose=run.pose.rows(kept))
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "clock_set"
+    assert f"step by {step_s:+.2f} s" in found.seen
+    assert warnings(found.mend(run)) == []
