@@ -63,8 +63,9 @@ def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
         "turns_at_rest",
         Level.WARNING,
         f"gyro_z reads {rate_rad_s:+.3f} rad/s in the median {how} by the treads",
-        "The treads read zero while the robot moves (odometry is lost, the robot is carried or "
-        "pushed), or the gyroscope has a bias far above what is usual",
+        "Either the treads read zero while the robot moves (odometry is lost, both hold the mean "
+        "of a turn on the spot, the robot is carried or pushed); or the gyroscope has a bias far "
+        "above what is usual",
         "Leave these stretches out: --from and --to",
     )
 

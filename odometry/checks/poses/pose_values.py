@@ -24,6 +24,8 @@ STRETCHED = (0.75, 1.1)  # the same, of positions whose stretch is undone
 COARSE_M = 0.02
 CUTS_RAD = 0.1  # turn on a line between two poses, that the line does not show
 SAME_RAD = 0.003  # yaw and course this near are one thing written twice
+OF_NOISE = 0.5  # of the noise of the course by its third differences, that such a yaw has
+SMOOTHED = "; or a filter smoothed yaw and positions of a robot that hardly slides"
 
 
 def pose_values(evidence: Evidence) -> Iterator[Finding]:
@@ -208,12 +210,15 @@ def _yaw_is_course(evidence: Evidence, rows: IntArray, positions: FloatArray) ->
     for course, at in courses:
         off = np.abs(np.angle(np.exp(1j * (course - at))))
         if float(np.median(off)) < SAME_RAD and np.ptp(yaw) > 0.5:
+            rough_rad = np.median(np.abs(np.diff(np.unwrap(course), n=3))) / np.sqrt(20)
+            has_noise = float(np.median(off)) < OF_NOISE * rough_rad
             yield _finding(
                 "yaw_is_course",
                 f"yaw of pose.csv is the direction between neighbouring positions to within "
                 f"{np.median(off):.1g} rad",
-                "Yaw is the course over ground, computed from positions: not the heading (wrong "
-                "backwards, on the spot and where the robot slides)",
+                f"{'Yaw' if has_noise else 'Either yaw'} is the course over ground, computed from "
+                "positions: not the heading (wrong backwards, on the spot and where the robot "
+                f"slides){'' if has_noise else SMOOTHED}",
                 "Leave yaw empty: positions alone are used then",
             )
             return

@@ -50,13 +50,20 @@ def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]
             continue
         if forward is not None and not _only(forward, speed, rate):
             continue
+        either, others = "The", "; or one tread's column repeats the mean"
+        if forward is None:
+            either = "Either the"
+            others = (
+                f"; or {names[0]} does not read its tread (its encoder was lost, its slow speeds "
+                "read zero, it repeats the mean): no way along was measured to distinguish these"
+            )
         yield Finding(
             "treads_are_twist",
             Level.WARNING,
             f"turns come from {names[1]} alone ({of_rate:.2f} rad for each unit of it, "
             f"{of_speed:.2f} for {names[0]})",
-            f"The columns hold the twist: {names[0]} is the forward speed v, {names[1]} the turn "
-            "rate omega, not the speeds of two treads; or one tread's column repeats the mean",
+            f"{either} columns hold the twist: {names[0]} is the forward speed v, {names[1]} the "
+            f"turn rate omega, not the speeds of two treads{others}",
             "Convert: v_left = v - omega * width / 2, v_right = v + omega * width / 2",
         )
         return

@@ -18,9 +18,10 @@ SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit t
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 OTHERWISE = 0.7  # of the motion by which it differs: on another terrain it does by a half
 SPEEDS = 0.5  # share of a motion from which columns that explain it are speeds
+HALF = 0.5  # of the rows that such a time should have
 SHOWN = 3  # times of which begin and end are printed
 LOST = (
-    "Odometry is lost: the log repeats its last value or zeros (a motor driver or bus that stopped)"
+    "odometry is lost: the log repeats its last value or zeros (a motor driver or bus that stopped)"
 )
 BLOCKED = "The robot is blocked or its wheels spin"
 Target = tuple[Motion, FloatArray, Relation | None]
@@ -64,22 +65,31 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
     """
     speeds, stamps_s = evidence.speeds_m_s, evidence.stamps_s
     inside = within(stamps_s, np.array(odd))
+    poses_alone = evidence.yaw_rate is None
+    if inside.sum() * evidence.period_s < HALF * sum(np.ptp(span) for span in odd):
+        return (
+            "Either rows of odometry.csv are lost, or their stamps are wrong there (a clock that "
+            "was set, rows sorted after stamps that went back); or speeds are logged as they "
+            "change, and odometry was lost or the robot blocked"
+        )
     if not np.abs(speeds[inside]).max() > 0:
         return (
-            f"{LOST}; or the robot was pushed, carried or slid, or stamps are off (a clock that "
-            "was set), or both treads moved too slowly to be read (a dead zone)"
+            f"Either {LOST}; or the robot was pushed, carried or slid, or stamps are off (a clock "
+            "that was set), or both treads moved too slowly to be read (a dead zone)"
+            + "; or the yaw is wrong there: no gyroscope says that the robot turned"
+            * poses_alone
         )
     moving = (np.abs(speeds[1:]).max(axis=1) > 0) & ~inside[1:]
     repeated = (speeds[1:] == speeds[:-1]).all(axis=1)
     if repeated[moving].sum() <= REPEATS * moving.sum():
-        return f"{LOST}: elsewhere they differ from row to row"
+        return f"{LOST.capitalize()}: elsewhere they differ from row to row"
     names = ("current_left", "current_right")
     currents = [evidence.run.odometry[n] for n in names if n in evidence.run.odometry]
     if any(np.ptp(current[inside]) > 0 for current in currents):
         return f"{BLOCKED}: the currents of the motors go on changing; or odometry is lost"
     return (
-        f"{LOST}; or the robot is blocked or its wheels spin, or readings are coarse: they stay "
-        "equal elsewhere as well"
+        f"Either {LOST}; or the robot is blocked or its wheels spin, or readings are coarse: they "
+        "stay equal elsewhere as well"
     )
 
 

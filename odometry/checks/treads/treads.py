@@ -134,8 +134,9 @@ def _idle(evidence: Evidence) -> Iterator[Finding]:
         "treads_still",
         level,
         f"the fastest tread speed is {evidence.fastest_m_s:.3g} m/s{moved}",
-        "The robot was stationary, carried or pushed, or the columns are empty or in km/s",
-        "Record a drive",
+        "Either the robot was stationary, carried or pushed; or the columns are empty or in km/s, "
+        "or both hold the mean of the treads, which is zero on the spot",
+        "Record a drive, and look whether the treads read anything",
     )
 
 
@@ -151,12 +152,16 @@ def equal_treads(evidence: Evidence) -> Iterator[Finding]:
     )
     for name, turns, lasts_s in measured:
         if (turned_rad := lasting_turn_rad(turns, lasts_s)) > LEAST_TURN_RAD:
+            alone = evidence.positions_measured is None or evidence.yaw_rate is None
             yield Finding(
                 "treads_equal",
                 Level.WARNING,
                 f"v_left equals v_right in {100 * np.mean(left[moving] == right[moving]):.0f} % of "
                 f"the rows in motion, and {name} turns over a range of {turned_rad:.2g} rad",
-                "Both columns hold one speed: the mean of the treads, or one tread twice",
+                f"{'Either both' if alone else 'Both'} columns hold one speed: the mean of the "
+                "treads, or one tread twice"
+                + f"; or turns by {name} are wrong: nothing else measured them"
+                * alone,
                 "Log the speed of each tread; the turns are lost",
             )
             return

@@ -16,6 +16,7 @@ EQUAL = 0.15  # difference of two sides, as a share of their sum, that turns a r
 NARROWEST, WIDEST = 0.8, 4.0  # effective width in track widths
 OF_ONE_WIDTH = 0.25  # difference of a spin from the usual one, which starts and stops leave
 MOST = 0.6  # of the turns with equal speeds
+HALF = 0.5  # of these windows, in which both columns are the same number
 BACKWARD = 0.5  # of the way of the treads
 # Of the windows backwards, where treads read nothing: these have lost more than a sign.
 SILENT = 0.5
@@ -32,25 +33,34 @@ def unsigned(evidence: Evidence) -> Iterator[Finding]:
     other_unit = metres is not None and not ORDINARY[0] < metres < ORDINARY[1]
     if (evidence.speeds_m_s < 0).any() or other_unit:
         return
-    spins, backwards = _spins(evidence), _backwards(evidence)
+    (spins, same), backwards = _spins(evidence), _backwards(evidence)
     seen = []
     if spins >= LEAST_WINDOWS:
         seen.append(f"the robot turns on the spot in {spins} windows with equal speeds")
     if backwards >= LEAST_WINDOWS:
         seen.append(f"positions go backwards in {backwards} windows")
+    either, others = "Tread", ""
+    if same > HALF * spins:
+        either = "Either tread"
+        others = (
+            "; or both columns hold one speed there (the mean of the treads, or one of them twice):"
+            f" they are the same number in each row of {same} of these windows"
+        )
     if seen:
         yield Finding(
             "treads_unsigned",
             Level.WARNING,
             f"no tread speed is negative, and {', and '.join(seen)}",
-            "Tread speeds have lost their sign: encoders of one channel, or magnitudes in the log",
+            f"{either} speeds have lost their sign: encoders of one channel, or magnitudes in the "
+            f"log{others}",
             "Log the direction of each tread; where it cannot be had, take the sign of the command",
         )
 
 
-def _spins(evidence: Evidence) -> int:
-    """Windows of turns that one side alone, running backwards, explains.
+def _spins(evidence: Evidence) -> tuple[int, int]:
+    """Windows of turns that one side alone, running backwards, explains, and equal ones of them.
 
+    Equal are both treads, the same number in each row.
     With equal speeds the robot either drives straight or spins as if of one width: turns of any
     size in between are another fault.
     """
@@ -62,11 +72,19 @@ def _spins(evidence: Evidence) -> int:
     over_width = np.abs(turns) * evidence.run.robot.track_width / np.maximum(both_m, 1e-9)
     turning = equal & (over_width > EQUAL / 2)
     if not turning.any():
-        return 0
+        return 0, 0
     usual = float(np.median(over_width[turning]))
     spun = turning & (np.abs(over_width / usual - 1) < OF_ONE_WIDTH)
     one_width = 1 / WIDEST < usual < 1 / NARROWEST and spun.sum() > MOST * turning.sum()
-    return int(spun.sum()) if one_width else 0
+    return (int(spun.sum()), int((spun & _same(evidence, of)).sum())) if one_width else (0, 0)
+
+
+def _same(evidence: Evidence, motion: Motion) -> BoolArray:
+    """Windows (K,) in each row of which both treads are the same number: two encoders differ."""
+    left, right = evidence.run.odometry.stack("v_left", "v_right").T
+    differ = np.cumsum(np.insert(left != right, 0, 0))
+    first, last = (np.searchsorted(evidence.stamps_s, s) for s in (motion.start_s, motion.end_s))
+    return np.asarray((last > first) & (differ[last] == differ[first]))
 
 
 def _backwards(evidence: Evidence) -> int:

@@ -64,10 +64,10 @@ def agreement(evidence: Evidence) -> Iterator[Finding]:
             "gyroscope_unrelated",
             "gyro_z has little to do with the turns of "
             + ("treads and poses" if agreed else "the treads"),
-            "gyro_z is of another axis (z is not up), another recording or another clock, its rows "
-            "or those of the treads were lost and stamps made up, or it holds no turn rate (a "
-            "magnitude, its change, a component along a fixed direction)"
-            + ("" if agreed else f"{OR_TREADS}, or slip all the time"),
+            f"{'' if agreed else 'Either '}gyro_z is of another axis (z is not up), another "
+            "recording or another clock, its rows or those of the treads were lost and stamps made "
+            "up, or it holds no turn rate (a magnitude, its change, a component along a fixed "
+            "direction)" + ("" if agreed else f"{OR_TREADS}, or slip all the time"),
             "State the axes of the sensor in [sensors] imu; check --picture shows the yaw rates",
         )
 

@@ -92,6 +92,8 @@ def across(evidence: Evidence, forward: float | None, width: float, tight: bool)
     unit = " (mm?)" if width < 0.01 else _tenfold(width / ORDINARY_WIDTH)
     possible = (body is None or body_fits) and MIXED * WIDTH[0] < width < WIDTH[1] / MIXED
     others = _others(evidence, forward, narrow=width < WIDTH[0]) if possible else ""
+    if width < WIDTH[0] and not possible:
+        others = ", or the treads differ by too little: speeds clipped at a limit, a mean of both"
     return Finding(
         "track_width",
         Level.WARNING,

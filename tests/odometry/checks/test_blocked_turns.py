@@ -55,7 +55,7 @@ def test_speeds_that_else_differ_from_row_to_row_are_frozen():
 def test_speeds_that_stay_equal_elsewhere_too_may_be_those_of_a_blocked_robot():
     found = only(standing(held_speeds(winding()), noise_m_s=0.0))
     assert found.name == "treads_frozen"
-    assert found.cause.startswith("Odometry is lost")
+    assert found.cause.startswith("Either odometry is lost")
     assert "blocked or its wheels spin" in found.cause
 
 

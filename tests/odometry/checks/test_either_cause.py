@@ -1,0 +1,80 @@
+"""A cause is a fact where its rivals are excluded; else the finding names them as well."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.checks.treads.slow_speeds import or_slow
+from tests.odometry.checks.faulty import put, treads, yaw
+from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
+from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
+
+AT_S = PERIOD_S * np.arange(4000)
+
+
+def first(run):
+    return check_recording(run).at(Level.WARNING)[0]
+
+
+def test_a_tread_that_slows_to_zero_may_be_in_a_dead_zone():
+    """An encoder that is lost leaves a speed."""
+    speed = np.interp(AT_S, [0, 60, 62, 72, 74, 200], [1.0, 1.0, 0.0, 0.0, 1.0, 1.0])
+    slows = put(winding(4000), "odometry", v_left=speed)
+    lost = put(slows, "odometry", v_left=np.where((AT_S > 60) & (AT_S < 74), 0.0, 1.0))
+    spans = [(63.0, 71.0)]
+    assert "slows down to zero" in or_slow(Evidence(slows), "v_left", spans)
+    assert "slows down" not in or_slow(Evidence(lost), "v_left", spans)
+
+
+def test_a_twist_without_a_way_along_may_be_a_tread_that_is_not_read():
+    def twist(left, right):
+        return (left + right) / 2, (right - left) / 0.9
+
+    run = treads(winding(), twist)
+    assert first(run).cause.startswith("The columns hold the twist")
+    alone = first(replace(run, pose=None))
+    assert alone.name == "treads_are_twist"
+    assert alone.cause.startswith("Either the columns hold the twist")
+
+
+def spinning_without_signs():
+    """Straight drives and turns on the spot, whose speeds differ in their last digits."""
+    spins = AT_S % 20 > 10
+    turn = np.where(spins, 0.5 * np.sign(np.sin(AT_S / 20)), 0.0)
+    run = replace(drive(np.where(spins, 0.0, 0.8), turn), pose=None)
+    return treads(run, lambda left, right: (np.abs(left), np.abs(right)))
+
+
+def test_equal_numbers_may_be_one_speed_and_no_lost_signs():
+    plain = first(spinning_without_signs())
+    equal = first(treads(spinning_without_signs(), lambda left, _: (left, left)))
+    assert plain.name == "treads_unsigned"
+    assert plain.cause.startswith("Tread speeds have lost their sign")
+    assert equal.cause.startswith("Either")
+    assert "both columns hold one speed" in equal.cause
+
+
+def test_one_speed_in_both_columns_is_a_fact_where_two_sensors_measure_turns():
+    run = treads(winding(), lambda left, right: ((left + right) / 2, (left + right) / 2))
+    assert first(run).cause.startswith("Both columns hold one speed")
+    assert first(replace(run, pose=None)).cause.startswith("Either both columns")
+
+
+def test_a_full_turn_of_yaw_is_what_it_steps_by_where_it_wraps():
+    gon = yaw(turning_all_round(), lambda angle: 200 / np.pi * angle)
+    (found,) = check_recording(gon).at(Level.WARNING)
+    assert found.cause.startswith("Yaw counts 400 to a full turn")
+    assert warnings(found.mend(gon)) == []
+
+
+def test_a_smooth_path_may_have_a_yaw_that_is_its_course():
+    """Yaw that was computed has the noise of the positions."""
+    smooth = drive(np.full(2400, 0.8), 0.1 * np.sin(AT_S[:2400] / 5), yaw_sigma=1e-4, sigma_m=1e-5)
+    assert first(smooth).cause.startswith("Either yaw is the course")
+    rough = drive(np.full(2400, 0.8), 0.3 * np.sin(AT_S[:2400] / 5))
+    x, y = rough.pose["x"], rough.pose["y"]
+    course = np.arctan2(np.diff(y, append=y[-1] + 0.01), np.diff(x, append=x[-1] + 0.01))
+    assert first(put(rough, "pose", yaw=course)).cause.startswith("Yaw is the course")
