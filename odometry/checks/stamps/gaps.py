@@ -58,8 +58,9 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             clock,
             level=Level.WARNING,
             reason="the robot does not move on meanwhile",
-            cause="The clock jumps: it was set ahead while recording (time synchronisation), or "
-            "the recording was paused",
+            cause=("Either rows come in bursts; or the" if _in_bursts(evidence) else "The")
+            + " clock jumps: it was set ahead while recording (time synchronisation), or the "
+            "recording was paused",
             remedy="Cut the recording there with --from and --to",
         )
 
@@ -111,7 +112,7 @@ def _why_lost(evidence: Evidence, lost_s: list[FloatArray]) -> str:
     Where a stretch of stamps goes back, rows that are sorted by time lie between others.
     """
     lasts_s, period_s = np.diff(evidence.stamps_s), evidence.period_s
-    if period_s < BURST * evidence.duration_s / len(lasts_s):
+    if _in_bursts(evidence):
         return (
             "Either rows come in bursts with stamps of arrival, or were logged as the speeds "
             "change; or rows of odometry.csv are lost"
@@ -126,6 +127,11 @@ def _why_lost(evidence: Evidence, lost_s: list[FloatArray]) -> str:
         )
     closer = any(_is_closer_before(evidence, begin_s) for begin_s, _ in lost_s)
     return LOST + CLOSER_ROWS * closer
+
+
+def _in_bursts(evidence: Evidence) -> bool:
+    """Whether most rows come far closer to each other than their number asks for."""
+    return evidence.period_s < BURST * evidence.duration_s / max(len(evidence.stamps_s) - 1, 1)
 
 
 def _is_closer_before(evidence: Evidence, begin_s: float) -> bool:

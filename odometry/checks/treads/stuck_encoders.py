@@ -13,6 +13,9 @@ from odometry.checks.treads.slow_speeds import or_slow, slow_speeds_zero
 from odometry.windows.spans import constant_spans, runs_of
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
+# Share of the rows with a slower speed that is not near zero, where slower ones read as the kept
+# one, and what is near zero as a share of it.
+RARE, ZERO = 0.01, 0.1
 BOTH = 0.8  # share of such a time in which both treads keep their values: a held command does so
 PIVOTS = 0.8  # share of the turns that the other tread explains where the robot turns about one
 LEAST_ROWS = 20  # windows
@@ -76,11 +79,16 @@ def _or_stands(evidence: Evidence, name: str, spans: list[tuple[float, float]]) 
 
 def _or_limited(values: FloatArray, kept: float, or_slowly: str, *, both: bool) -> str:
     """What else keeps a value: a limit of the speeds that are read."""
-    if kept in (values.max(), values.min()) and kept != 0:
+    size, largest_m_s = np.abs(values), float(np.abs(values).max())
+    slower = (size > ZERO * abs(kept)) & (size < (1 - STANDING) * abs(kept))
+    moves = STANDING * largest_m_s < abs(kept) < largest_m_s
+    if moves and slower.mean() < RARE:
+        other = f"it reads no speed between 0 and {abs(kept):.4g} m/s, and slower ones as this one"
+    elif kept in (values.max(), values.min()) and kept != 0:
         other = f"it is clipped at {kept:.4g} m/s, its largest value"
     elif or_slowly:
         other = or_slowly
-    elif both and abs(kept) < STANDING * np.abs(values).max():
+    elif both and abs(kept) < STANDING * largest_m_s:
         other = "slow speeds read zero (a dead band, play of the gear): both treads have such times"
     else:
         return ""

@@ -29,6 +29,16 @@ def test_a_tread_that_slows_to_zero_may_be_in_a_dead_zone():
     assert "slows down" not in or_slow(Evidence(lost), "v_left", spans)
 
 
+def test_a_tread_that_reads_slow_speeds_as_one_is_not_lost_as_a_fact():
+    speed = 0.9 + 0.6 * np.sin(AT_S / 9)
+    run = drive(speed, 0.4 * np.sin(AT_S / 3))
+    least = treads(run, lambda left, right: (np.maximum(left, 0.7), right))
+    held = np.where((AT_S > 60) & (AT_S < 75), 0.7, run.odometry["v_left"])
+    assert first(least).name == first(put(run, "odometry", v_left=held)).name == "stuck_encoder"
+    assert "reads no speed between 0 and 0.7 m/s" in first(least).cause
+    assert first(put(run, "odometry", v_left=held)).cause.startswith("The encoder")
+
+
 def test_a_twist_without_a_way_along_may_be_a_tread_that_is_not_read():
     def twist(left, right):
         return (left + right) / 2, (right - left) / 0.9
