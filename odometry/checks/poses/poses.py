@@ -16,6 +16,8 @@ from odometry.checks.poses.yaw_jumps import yaw_jumps
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
+CLOSER = 0.75  # of the usual time to the neighbours, that outliers have where rows are mixed
+MIXED = "; or poses of two times are mixed there (stamps that went back and were sorted)"
 LEAST_S, LEAST_PERIODS = 5.0, 10.0  # an outage is longer than both
 LEAST_M = 1.0  # that the treads travel meanwhile
 
@@ -48,12 +50,17 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
     away = np.hypot(*(pose.stack("x", "y")[found] - pose.stack("x", "y")[beside]).T)
     share = len(found) / len(measured)
+    usual_s = float(np.median(np.diff(pose.stamps_s)))
+    inner = np.clip(found, 1, len(pose) - 2)
+    beside_s = (pose.stamps_s[inner + 1] - pose.stamps_s[inner - 1]) / 2
+    mixed = float(np.median(beside_s)) < CLOSER * usual_s
     yield Finding(
         "pose_outliers",
         Level.WARNING if share > OUTLIERS or len(found) > 5 else Level.NOTE,
         f"{counted(len(found), 'pose')} ({100 * share:.3g} %) up to {away.max():.3g} m away from "
         "the neighbours, and back again",
-        "Outliers of the reference (multipath, a wrong match)",
+        f"{'Either outliers' if mixed else 'Outliers'} of the reference (multipath, a wrong match)"
+        + MIXED * mixed,
         "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
         tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),
     )

@@ -36,6 +36,14 @@ CORRECTED = (
     "Number the stretches between jumps in a column `window`, or cut with --from and --to",
 )
 
+ACROSS_WRAP = (
+    "Either yaw was interpolated or averaged across its wrap (from pi to -pi, from 2 pi to 0): "
+    "rows between lie on neither side; or yaw jumps (a reference that was corrected)",
+    "Interpolate sine and cosine of yaw, or log the rows that were measured",
+)
+# Of a full turn: the range of raw yaw around a wrap, and a step within it that a wrap is.
+WRAPS, STEPS = 0.8, 0.75
+
 
 def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     """Steps of the measured yaw against the gyroscope, and whether the yaw itself makes them.
@@ -65,7 +73,7 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
     peaks = [begin + int(np.argmax(step[begin:end])) for begin, end in runs_of(odd)]
     own = [i for i in peaks if jumps_by_itself(stamps_s, yaw[:, None], i, float(step[i]))]
     if own:
-        yield _jumps(evidence, stamps_s[own], step[own])
+        yield _jumps(evidence, stamps_s[own], step[own], _across_wraps(evidence, stamps_s[own]))
     elif peaks:
         yield disagreement(
             f"yaw of pose.csv and the gyroscope part by {np.degrees(step[peaks[0]]):.0f} degrees "
@@ -83,17 +91,28 @@ def _steps(evidence: Evidence, stamps_s: FloatArray, off_rad: FloatArray) -> Flo
     return step
 
 
-def _jumps(evidence: Evidence, at_s: FloatArray, steps_rad: FloatArray) -> Finding:
+def _across_wraps(evidence: Evidence, at_s: FloatArray) -> int:
+    """Moments around which raw yaw goes over its whole range in rows between both ends."""
+    assert evidence.run.pose is not None  # noqa: S101 - checked by the caller
+    stamps_s, raw = evidence.run.pose.stamps_s, evidence.run.pose["yaw"]
+    full = 360.0 if evidence.yaw_in_degrees else 2 * np.pi
+    parts = (raw[(stamps_s > s - FAR_S) & (stamps_s < s + FAR_S)] for s in at_s.tolist())
+    whole = [part for part in parts if np.ptp(part) > WRAPS * full]
+    return sum(float(np.abs(np.diff(part)).max()) < STEPS * full for part in whole)
+
+
+def _jumps(evidence: Evidence, at_s: FloatArray, steps_rad: FloatArray, wraps: int) -> Finding:
     turned = np.abs(steps_rad - np.pi) < HALF_TURN_RAD
     reverses = sum(_reverses(evidence, stamp_s) for stamp_s in at_s[turned].tolist())
     sizes = [f"{degrees:.0f} degrees" for degrees in np.degrees(steps_rad)]
     places = first_ones(evidence, at_s, sizes)
+    cause = AS_COURSE if 2 * reverses > len(at_s) else CORRECTED
     return Finding(
         "yaw_jumps",
         Level.WARNING,
         f"yaw of pose.csv jumps against the gyroscope, and stays, {counted(len(at_s), 'time')}: "
         f"{places}",
-        *(AS_COURSE if 2 * reverses > len(at_s) else CORRECTED),
+        *(ACROSS_WRAP if 2 * wraps > len(at_s) else cause),
         moments(evidence, at_s),
     )
 

@@ -10,7 +10,7 @@ from odometry.checks.recording import check_recording
 from odometry.checks.treads.slow_speeds import or_slow
 from tests.odometry.checks.faulty import put, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
+from tests.odometry.checks.test_other_robots import PERIOD_S, drive, table, winding
 
 AT_S = PERIOD_S * np.arange(4000)
 
@@ -88,3 +88,31 @@ def test_a_smooth_path_may_have_a_yaw_that_is_its_course():
     x, y = rough.pose["x"], rough.pose["y"]
     course = np.arctan2(np.diff(y, append=y[-1] + 0.01), np.diff(x, append=x[-1] + 0.01))
     assert first(put(rough, "pose", yaw=course)).cause.startswith("Yaw is the course")
+
+
+def resampled(run):
+    """Yaw from 0 to 2 pi, of every third row, and lines between them."""
+    at, whole = run.pose.stamps_s, np.mod(run.pose["yaw"], 2 * np.pi)
+    return put(run, "pose", yaw=np.interp(at, at[::3], whole[::3]))
+
+
+def test_yaw_interpolated_across_its_wrap_does_not_jump_as_a_fact():
+    found = first(resampled(drive(np.full(4000, 0.8), 0.25 + 0.2 * np.sin(AT_S / 7))))
+    assert found.name == "yaw_jumps"
+    assert found.cause.startswith("Either yaw was interpolated")
+    run = turning_all_round()
+    half = yaw(run, lambda angle: angle + 1.5 * (run.pose.stamps_s > 100))
+    assert first(half).cause.startswith("Yaw jumps")
+
+
+def test_outliers_amid_rows_of_two_times_may_be_no_outliers():
+    run = turning_all_round()
+    columns, stamps_s = run.pose.columns, run.pose.stamps_s
+    late = (stamps_s > 80) & (stamps_s < 84) & (np.arange(len(stamps_s)) % 8 == 0)
+    t = np.where(late, stamps_s - 15.03, stamps_s)
+    rows = np.argsort(t)
+    mixed = replace(
+        run, pose=table("pose.csv", **{n: c[rows] for n, c in columns.items()} | {"t": t[rows]})
+    )
+    outliers = [f for f in check_recording(mixed).findings if f.name == "pose_outliers"]
+    assert outliers[0].cause.startswith("Either outliers")
