@@ -114,7 +114,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "treads_frozen": frozenset({"pose_jumps", "slip", "odometry_gap", "turns_at_rest"})
     | {"far_sensor", "track_width", "treads_unequal", "tread_offset", "turn_blocked"},
     "odometry_gap": frozenset({"pose_jumps", "positions_stretched", "yaw_bent"}),
-    "clock_set": frozenset({"pose_jumps", "yaw_jumps", "slip", "scale"}),
+    "clock_set": frozenset({"pose_jumps", "slip", "scale"}),
     "dropped_speeds": frozenset({"treads_not_proportional"}),
     "placeholder_speeds": frozenset({"treads_not_proportional", "absurd_speed", "dropped_speeds"}),
     "imu_mount": frozenset({"gyroscope_reversed", "gyroscope_unrelated"}),

@@ -20,7 +20,8 @@ def only(run):
 
 def eight():
     """Lobes to the left and to the right, by ICRs of which the right one is nearer."""
-    left, right = np.where((AT_S % 20 < 10)[:, None], [0.2, 1.0], [1.0, 0.2]).T
+    lobe = AT_S // (2 * np.pi * 0.9 / 0.8) % 2 == 0
+    left, right = np.where(lobe[:, None], [0.2, 1.0], [1.0, 0.2]).T
     near, far = -0.25, 0.65
     turn = (right - left) / (far - near)
     run = drive((right * far - left * near) / (far - near), turn)

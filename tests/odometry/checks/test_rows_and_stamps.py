@@ -4,11 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.checks.findings.finding import Level
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.consequences import without_consequences
+from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
+from odometry.checks.treads.tread_motion import _cause
+from tests.odometry.checks.faulty import put
 from tests.odometry.checks.test_confirmed_causes import warnings
 from tests.odometry.checks.test_one_delay import stepping
-from tests.odometry.checks.test_other_robots import PERIOD_S, table, winding
+from tests.odometry.checks.test_other_robots import PERIOD_S, table, winding, without_gyroscope
 
 AT_S = PERIOD_S * np.arange(4000)
 
@@ -53,13 +58,38 @@ def test_stamps_of_another_rate_are_no_other_recording():
     assert "stamps were made up" in found.cause
 
 
-def test_rows_in_bursts_are_not_lost():
-    """Each second they come 1 ms apart, while poses and gyroscope go on."""
+def test_rows_in_bursts_are_not_lost_as_a_fact():
+    """Each second they come 1 ms apart, but for six seconds."""
     run = winding()
     t = np.ceil(AT_S[:2400] + 0.01) + 0.001 * (np.arange(2400) % 20)
     imu = table("imu.csv", t=AT_S[:2400], gyro_z=run.odometry["gyro_z"])
-    columns = {**run.odometry.columns, "t": t}
-    run = replace(run, odometry=table("odometry.csv", **columns), imu=imu)
-    causes = [found.cause for found in check_recording(run).at(Level.WARNING)]
-    assert causes
-    assert not any(cause.startswith(("Rows of odometry.csv are", "The clock")) for cause in causes)
+    bursts = table("odometry.csv", **{**run.odometry.columns, "t": t})
+    bursts = bursts.rows(np.flatnonzero((t < 40) | (t > 45)))
+    assert gap(replace(run, odometry=bursts, imu=imu)).cause.startswith(
+        "Either rows come in bursts"
+    )
+
+
+def finding(name):
+    return Finding(name, Level.WARNING, "", "", "")
+
+
+def test_what_is_wrong_with_stamps_or_axes_hides_what_follows():
+    """Bursts leave pauses, and treads that do not go with the turns have no known unit."""
+    for cause, follows in (("uneven_stamps", "clock_set"), ("gyroscope_unrelated", "tread_unit")):
+        assert without_consequences([finding(cause), finding(follows)]) == [finding(cause)]
+
+
+def test_yaw_may_be_wrong_where_no_gyroscope_says_that_the_robot_turns():
+    run = winding(4000)
+    zero = {n: np.where((AT_S > 40) & (AT_S < 60), 0.0, run.odometry[n]) for n in TREADS}
+    stopped, span = put(run, "odometry", **zero), [np.array([41.0, 59.0])]
+    assert "the yaw is wrong there" not in _cause(Evidence(stopped), span)
+    assert "the yaw is wrong there" in _cause(Evidence(without_gyroscope(stopped)), span)
+
+
+def test_speeds_held_where_rows_are_missing_repeat_no_value():
+    run = winding(4000)
+    lost = replace(run, odometry=run.odometry.rows(np.flatnonzero((AT_S < 60) | (AT_S > 70))))
+    cause = _cause(Evidence(lost), [np.array([60.0, 70.0])])
+    assert cause.startswith("Either rows of odometry.csv are lost")
