@@ -115,7 +115,8 @@ def _dead(evidence: Evidence, name: str) -> Finding:
         Level.WARNING,
         f"{name} stays near 0 m/s all the time, while v_{other} reaches "
         f"{evidence.fastest_m_s:.3g} m/s and the robot does not turn about the {tread} tread",
-        f"The encoder of the {tread} tread is stuck or was lost, or its column was not filled",
+        f"Either the encoder of the {tread} tread is stuck or was lost, or its column was not "
+        "filled; or it was never fast enough to be read",
         "Record again with both encoders",
         ((evidence.run_time_s(evidence.stamps_s[0]), evidence.run_time_s(evidence.stamps_s[-1])),),
     )

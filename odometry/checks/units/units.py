@@ -11,6 +11,7 @@ from odometry.checks.evidence.relation import Relation, pieces
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import times
 from odometry.checks.treads.proportion import holds_the_mean
+from odometry.checks.units.constant_along import reads_less
 from odometry.checks.units.effective_width import (
     ORDINARY_WIDTH,
     PLAUSIBLE_M_S,
@@ -143,6 +144,8 @@ def _on_straight_lines(evidence: Evidence, straight: float, forward: float | Non
     seen = f"the robot moves {straight:.3g} m for each m of tread travel on straight lines"
     if forward is not None and straight > STRAIGHT_TO_ALL * forward:
         return disagreement(f"{seen}, and {forward:.3g} m for each of all")
+    if straight > 1 and (constant := reads_less(evidence)):
+        return disagreement(f"{seen}; {constant}")
     if uneven := uneven_way(evidence, straight / ORDINARY_FORWARD):
         return disagreement(f"{seen}, by no constant factor: {uneven}")
     return scale_along(seen, straight, evidence.run.robot.wheel_radius is not None)
@@ -156,6 +159,8 @@ def _along(evidence: Evidence, forward: float, tight: bool, width: float | None)
     if 1 / EXTREME < forward < EXTREME:
         if carried := carried_along(evidence):
             return disagreement(carried)
+        if forward > 1 and (constant := reads_less(evidence)):
+            return disagreement(f"{seen}; {constant}")
         if uneven := uneven_way(evidence, forward / ORDINARY_FORWARD):
             seen, tight = f"{seen}, by no constant factor: {uneven}", False
             if forward > 1 or one_side(evidence):

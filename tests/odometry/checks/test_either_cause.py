@@ -39,6 +39,19 @@ def test_a_tread_that_reads_slow_speeds_as_one_is_not_lost_as_a_fact():
     assert first(put(run, "odometry", v_left=held)).cause.startswith("The encoder")
 
 
+def test_a_dead_zone_is_no_scale():
+    run = drive(0.9 + 0.4 * np.sin(AT_S / 9), 0.1 * np.sin(AT_S / 3) + 0.12)
+
+    def less(left, right):
+        return tuple(np.sign(v) * np.maximum(np.abs(v) - 0.25, 0) for v in (left, right))
+
+    found = first(treads(run, less))
+    assert found.name == "sensors_disagree"
+    assert "a dead zone" in found.seen
+    scaled = first(treads(run, lambda left, right: (0.6 * left, 0.6 * right)))
+    assert scaled.name in {"scale", "tread_unit"}
+
+
 def test_a_twist_without_a_way_along_may_be_a_tread_that_is_not_read():
     def twist(left, right):
         return (left + right) / 2, (right - left) / 0.9
