@@ -11,6 +11,7 @@ from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.set_clocks import step_of_lag
+from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from tests.odometry.checks.faulty import pose_stamps
 from tests.odometry.checks.test_confirmed_causes import warnings
 from tests.odometry.checks.test_one_delay import stepping
@@ -59,3 +60,8 @@ def test_a_clock_that_was_set_is_named_and_undone(step_s):
     assert found.name == "clock_set"
     assert f"step by {step_s:+.2f} s" in found.seen
     assert warnings(found.mend(run)) == []
+
+
+def test_a_sensor_that_is_never_on_time_has_no_clock_that_was_set():
+    run = pose_stamps(stepping(), lambda t: t + np.where(t > 80, 1.3, 0.6))
+    assert list(stepping_clocks(Evidence(run))) == []
