@@ -1,17 +1,23 @@
 import gc
 import os
+import sys
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, settings
 
 # Every core has a process already; a thread more for each only waits for the others, and a process
 # more, of verbs that take all cores, loads all libraries again.
 for library in ("OMP", "OPENBLAS", "MKL"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
+# Also where the environment wants no compiled files: without them each of the 60 processes that
+# tests start compiles the packages again, and each process of tests all assertions. Git ignores
+# them. A program that sets it in its own process (`tests/studies/mutants.py`) has none.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", None) is not None:
+    sys.dont_write_bytecode = False
 
 import numpy as np  # noqa: E402 - it reads them
+from hypothesis import HealthCheck, settings  # noqa: E402 - compiled files of it are kept
 
 SLOW = [HealthCheck.too_slow]  # is said of a busy computer, too: three tests failed by it on one
 settings.register_profile(

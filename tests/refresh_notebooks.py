@@ -9,11 +9,16 @@ import base64
 import io
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import nbformat
+from jupyter_client.manager import AsyncKernelManager
+from jupyter_core.utils import run_sync
 from nbclient import NotebookClient
 from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell
 from PIL import Image
 
 NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
@@ -22,17 +27,43 @@ COLOURS = (256, 64, 32)  # as many as leave a picture small
 PICTURE_BYTES = 25_000
 
 
-def executed(notebook: Path) -> NotebookNode:
+# no name, no module of the project and no setting of figures is left of another notebook
+FRESH = """
+import os, sys
+os.chdir("{folder}")
+%reset -f
+import sys
+for name in [name for name in sys.modules if name.partition(".")[0] in ("odometry", "terrain")]:
+    del sys.modules[name]
+if "matplotlib" in sys.modules:
+    sys.modules["matplotlib"].rcdefaults()
+%reset -f
+"""
+
+
+@contextmanager
+def shared_kernel() -> Iterator[AsyncKernelManager]:
+    """A kernel for several notebooks, which the first one starts."""
+    kernel = AsyncKernelManager(kernel_name="python3")
+    try:
+        yield kernel
+    finally:
+        if kernel.has_kernel:
+            run_sync(kernel.shutdown_kernel)(now=True)
+
+
+def executed(notebook: Path, kernel: AsyncKernelManager) -> NotebookNode:
     """The notebook with what it shows when it is run in an empty folder."""
     book = nbformat.read(notebook, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        NotebookClient(
-            book,
-            timeout=600,
-            kernel_name="python3",
-            record_timing=False,
-            resources={"metadata": {"path": folder}},
-        ).execute()
+        book.cells.insert(0, new_code_cell(FRESH.format(folder=folder)))
+        client = NotebookClient(book, km=kernel, timeout=600, record_timing=False)
+        try:
+            client.execute()
+        finally:
+            if client.kc is not None:
+                client.kc.stop_channels()
+    del book.cells[0]
     for cell in book.cells:
         cell.metadata = NotebookNode()
         if cell.cell_type == "code":
@@ -81,5 +112,6 @@ def small(encoded: str) -> str:
 
 
 if __name__ == "__main__":
-    for notebook in map(Path, sys.argv[1:] or sorted(NOTEBOOKS.glob("*.ipynb"))):
-        nbformat.write(executed(notebook), notebook)
+    with shared_kernel() as kernel:
+        for notebook in map(Path, sys.argv[1:] or sorted(NOTEBOOKS.glob("*.ipynb"))):
+            nbformat.write(executed(notebook, kernel), notebook)

@@ -1,5 +1,6 @@
 """The examples of adding.md, applied to a copy of the project: what is added there works."""
 
+import json
 import os
 import re
 import shlex
@@ -14,6 +15,16 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "tests/adding.md").read_text(encoding="utf-8")
 SECTIONS = re.findall(r"^## (An? .+?)\n(.*?)(?=^## )", TEXT, flags=re.DOTALL | re.MULTILINE)
 MOST_LINES = 60
+CALLED = """
+import contextlib, io, json, sys
+import pytest
+ended = {}
+for name, words in json.loads(sys.argv[1]).items():
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        code = pytest.main(["-q", "-n", "0", "-p", "no:cacheprovider", *words])
+    ended[name] = (code, said.getvalue())
+print(json.dumps(ended))
+"""
 Block = tuple[str, str, str]  # file, the line after which it is inserted ("" of new files), lines
 
 
@@ -70,18 +81,26 @@ def test_the_copy_is_as_the_style_asks(copy: Path) -> None:
     assert found.returncode == 0, found.stdout[-2000:]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "section"), SECTIONS, ids=[name for name, _ in SECTIONS])
-def test_what_is_added_passes_its_tests(copy: Path, name: str, section: str) -> None:
-    (command,) = re.findall(r"`(pytest .*?)`", section)
-    words = shlex.split(command)[1:]
-    found = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", *words],
+@pytest.fixture(scope="module")
+def ended(copy: Path) -> dict[str, tuple[int, str]]:
+    """Exit code and output of the command of each section, all called in one process."""
+    commands = {name: re.findall(r"`(pytest .*?)`", section) for name, section in SECTIONS}
+    calls = {name: shlex.split(command)[1:] for name, (command,) in commands.items()}
+    called = subprocess.run(
+        [sys.executable, "-c", CALLED, json.dumps(calls)],
         cwd=copy,
         env={**os.environ, "PYTHONPATH": str(copy)},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert found.returncode == 0, f"{name}: {found.stdout[-3000:]}"
-    assert int(re.findall(r"(\d+) passed", found.stdout)[0]) > 0
+    assert called.returncode == 0, called.stderr[-3000:]
+    return {name: (code, said) for name, (code, said) in json.loads(called.stdout).items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name, _ in SECTIONS])
+def test_what_is_added_passes_its_tests(ended: dict[str, tuple[int, str]], name: str) -> None:
+    code, said = ended[name]
+    assert code == 0, f"{name}: {said[-3000:]}"
+    assert int(re.findall(r"(\d+) passed", said)[0]) > 0

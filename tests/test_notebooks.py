@@ -8,10 +8,11 @@ from tempfile import gettempdir
 import nbformat
 import numpy as np
 import pytest
+from jupyter_client.manager import AsyncKernelManager
 from nbformat import NotebookNode
 
 from tests.public_names import private_imports
-from tests.refresh_notebooks import NOTEBOOKS, executed
+from tests.refresh_notebooks import NOTEBOOKS, executed, shared_kernel
 
 BYTES = 200_000
 NUMBER = r"[-+]?\b\d+(?:\.\d+)?(?:e[-+]?\d+)?"
@@ -57,10 +58,16 @@ def assert_alike(kept: str, made: str) -> None:
         assert abs(float(number) - float(other)) <= most, (number, other, kept)
 
 
+@pytest.fixture(scope="module")
+def kernel() -> Iterator[AsyncKernelManager]:
+    with shared_kernel() as started:
+        yield started
+
+
 @pytest.mark.slow
 @each_notebook
-def test_outputs_are_those_of_a_run(notebook: Path) -> None:
-    kept, made = nbformat.read(notebook, as_version=4), executed(notebook)
+def test_outputs_are_those_of_a_run(notebook: Path, kernel: AsyncKernelManager) -> None:
+    kept, made = nbformat.read(notebook, as_version=4), executed(notebook, kernel)
     assert any(cell.outputs for cell in code_cells(kept))
     for cell, again in zip(code_cells(kept), code_cells(made), strict=True):
         old, new = list(shown(cell)), list(shown(again))

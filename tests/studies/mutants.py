@@ -163,7 +163,8 @@ def run_tests(copy: Path, tests: list[str]) -> None:
     for name in [name for name in sys.modules if name.partition(".")[0] in own]:
         del sys.modules[name]
     sys.path = [str(copy), *(path for path in sys.path if Path(path or ".").resolve() != ROOT)]
-    sys.dont_write_bytecode = True
+    sys.dont_write_bytecode = True  # two changes within a second would have the same stamp
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # which `tests/conftest.py` would undo
     code = pytest.main(["-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests])
     os._exit(int(code))
 
