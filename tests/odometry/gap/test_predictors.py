@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import kruskal
+from scipy.stats import kruskal, rankdata
 
-from odometry.gap.locate.predictors import groups_of, predictors
+from odometry.gap.locate.predictors import _ranks, groups_of, predictors
 from odometry.gap.locate.variables import Variable, window_variables
 from odometry.gap.prepare.end_residuals import Ends, ends_of
 
@@ -102,6 +102,17 @@ def test_the_statistic_is_that_of_kruskal_and_wallis(rng):
     found = predictors([variable], ends(motion))[0]
     assert found.predicts == "turn"
     assert found.strength == pytest.approx((expected - 5 + 1) / (WINDOWS - 5))
+
+
+@pytest.mark.parametrize("equal", [False, True])
+def test_ranks_are_those_of_scipy_with_and_without_equal_ones(rng, equal):
+    normalised = rng.normal(size=(7, WINDOWS, 3))
+    if equal:
+        normalised[2, 5] = normalised[2, 60]
+    size = np.hypot(normalised[..., :1], normalised[..., 1:2])
+    expected = rankdata(np.concatenate([size, normalised], axis=-1), axis=1)
+    np.testing.assert_array_equal(_ranks(normalised), expected)
+    assert (expected % 1 == 0.5).any() == equal
 
 
 def test_groups_are_quantiles_sectors_and_labels():
