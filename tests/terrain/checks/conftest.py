@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import odometry
+from odometry.by_content import by_content
 from odometry.run import Run
 from terrain.camera.camera import Camera
+from terrain.checks import fixed_parts
 from terrain.checks.recording import check_run
 from terrain.checks.terrain_views import TerrainViews
 
@@ -29,16 +31,28 @@ def camera(drive):
 
 @pytest.fixture(scope="session", autouse=True)
 def looked_at_once(drive):
-    """The images of `drive` are looked at once, whatever run and camera they are given."""
-    look, views = TerrainViews._seen, {}
+    """The images of `drive` are looked at once, whatever run and camera they are given.
+
+    What stays in the same images is looked for once on the same terrain.
+    """
+    look, views, read, images = TerrainViews._seen, {}, TerrainViews.grey, {}
 
     def seen(self, name):
         if self.run.folder != drive.folder:
             return look(self, name)
         return look(views.setdefault(self.size, TerrainViews(drive, self.size)), name)
 
+    def grey(self, name):
+        if self.run.folder != drive.folder:
+            return read(self, name)
+        if (self.size, name) not in images:
+            images[self.size, name] = read(self, name)
+        return images[self.size, name]
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(TerrainViews, "_seen", seen)
+        patch.setattr(TerrainViews, "grey", grey)
+        patch.setattr(fixed_parts, "_fixed", by_content()(fixed_parts._fixed))
         yield
 
 
