@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import Classification
+from terrain.classification.answer import DOUBTFUL, Classification
+from terrain.classification.no_ground import DARK, OVEREXPOSED
+from terrain.classification.training_light import BY_LIGHT
 from terrain.region.region import Region
 
 ASTRIDE = "astride:"  # begins the reason where the two tread strips differ
@@ -49,6 +51,16 @@ class ImageLabel:
     probabilities: Mapping[str, float] = field(default_factory=dict)
     class_distance: float = float("nan")
     patches: int = 1
+
+    @property
+    def is_evidence(self) -> bool:
+        """Whether the label says something of the terrain.
+
+        ``unknown`` says that it resembles none with a name; not where a name is doubtful, the image
+        white or black, or where the tread strips differ.
+        """
+        of_nothing = (ASTRIDE, DOUBTFUL, BY_LIGHT, OVEREXPOSED, DARK)
+        return self.label != UNKNOWN or not self.reason.startswith(of_nothing)
 
 
 def answered(

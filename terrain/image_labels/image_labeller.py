@@ -27,6 +27,8 @@ from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_misma
 KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one light
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
 WORTH_OF_UNLIKE = 0.3
+# `Likeness.beyond` of drives over held-out photographs of the own camera is 1.5 at most
+FAR = 1.5
 LOST_DETAILS = "the image lost details of the terrain: fog, a wet lens, another focus"
 
 
@@ -67,6 +69,12 @@ class RunLikeness:
             return None
         looks, differences = list(self._looks)[-LATEST:], list(self._differences)[-LATEST:]
         return self._training.summary(np.array(looks), np.array(differences))
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the images are so unlike the photographs that any without a name counts."""
+        likeness = self.likeness
+        return likeness is not None and likeness.beyond is not None and likeness.beyond > FAR
 
     def weighed(self, label: str, probabilities: Mapping[str, float]) -> Mapping[str, float]:
         """Probabilities of each terrain by a label; closer to chance where images are unlike.

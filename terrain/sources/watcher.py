@@ -109,6 +109,8 @@ class TerrainWatcher:
             if image_label.label and image_label.region is not None:
                 given = self.seen.weighed(image_label.label, image_label.probabilities)
                 place_label = _place_label(image_label, image_label.region, given, pose, travel_m)
+                if self.seen.is_far:
+                    place_label = replace(place_label, is_evidence=True)
                 self._switch = self._switch.add_label(self._beside(place_label))
         self._feel(frame, pose)
         self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
@@ -193,4 +195,5 @@ def _place_label(
         se2.transform(pose, region.place),
         region.distance_ahead_m,
         given,
+        is_evidence=image_label.is_evidence,
     )

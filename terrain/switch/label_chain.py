@@ -5,15 +5,22 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.run import UNKNOWN
 
 # chosen with simulated labels, half of whose drives were kept for the figures
 UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name
+# of the appearances of a known terrain so many resemble none, and of the labels of an appearance
+# so many are `unknown` by themselves: what training refuses of known patches
+REFUSED = 0.05
+# and of one without a name: either as few, or what photographs of terrains that were not in
+# training have, 0.38 of patches to 0.63 of photographs
+REFUSED_UNNAMED = np.array([REFUSED, 0.5])
 
 
 def given_to(
     labels: Sequence[str], probabilities: Sequence[Mapping[str, float]], names: Sequence[str]
 ) -> FloatArray:
-    """Probability of each terrain by each label.
+    """Probability of each terrain by each label; zeros where the label is ``unknown``.
 
     Parameters
     ----------
@@ -28,7 +35,7 @@ def given_to(
     """
     given = np.zeros((len(labels), len(names)))
     for row, label, by_name in zip(given, labels, probabilities, strict=True):
-        of = by_name or {label: 1.0}
+        of = {} if label == UNKNOWN else by_name or {label: 1.0}
         row[:] = [of.get(name, 0.0) for name in names]
     return given
 
@@ -51,18 +58,20 @@ def smoothed(
     """Probability of each terrain at each place, given the labels of all places.
 
     There are k named terrains and one that is none of them. A place has the appearance of one of
-    the k: usually of its own, seldom of another, and of each of the k with equal probability where
-    it is none of them. Between places a distance s apart the terrain stays with probability
-    exp(-s / change_m), and is else drawn again. Where it stays, the appearance stays with
-    probability exp(-s / alike_m), and is else drawn again. A label names the appearance, or seldom
-    any of the k. Half of the wrong labels come from a wrong appearance, which lasts; the others are
-    independent. So many labels of one stretch are little more evidence than one of them, and labels
-    that contradict each other support no name.
+    the k, or resembles none. On a named terrain it is usually its own, seldom another or none; on
+    the one without a name none in half of the places, else each of the k with equal probability.
+    Between places a distance s apart the terrain stays with probability exp(-s / change_m), and is
+    else drawn again. Where it stays, the appearance stays with probability exp(-s / alike_m), and
+    is else drawn again. A label names the appearance, or seldom another. Half of the wrong labels
+    come from a wrong appearance, which lasts; the others are independent. So many labels of one
+    stretch are little more evidence than one of them, and labels that contradict each other, or
+    names among many images without one, support no name.
 
     Parameters
     ----------
     given : (n, k)
-        Probability of each named terrain by the label of each place.
+        Probability of each named terrain by the label of each place; zeros where the image was
+        of none.
     steps_m : (n,)
         Distance to each place from the one before; the first is that from where `prior` holds.
     prior : (k + 1,)
@@ -89,21 +98,39 @@ def smoothed(
     """
     count = given.shape[1]
     wrong = (1 - accuracy) / 2
-    seen = ((1 - wrong) * given + wrong / count)[:, None, :]
-    terrain_evidence = np.column_stack([given, given.mean(axis=1)])[:, :, None]
+    seen = _by_appearance(given, wrong)[:, None, :]
+    of_none = given.mean(axis=1, keepdims=True)
+    terrain_evidence = np.hstack([given, of_none, of_none])[:, :, None]
     evidence = seen if by_feel is None else np.where(by_feel[:, None, None], terrain_evidence, seen)
     own = (1 - wrong) * np.eye(count) + wrong / count
-    appearances = np.vstack([own, np.full(count, 1 / count)])
-    drawn = of_any_place(count)[:, None]
+    appearances = np.vstack([own, np.full((2, count), 1 / count)])
+    like_none = np.append(np.full(count, REFUSED), REFUSED_UNNAMED)[:, None]
+    appearances = np.hstack([(1 - like_none) * appearances, like_none])
+    drawn = _both_unnamed(of_any_place(count))[:, None]
     ahead, after = _both_ways(
         np.broadcast_to(evidence, (len(evidence), *appearances.shape)),
-        prior[:, None] / drawn,
+        _both_unnamed(prior)[:, None] / drawn,
         np.stack([np.exp(-steps_m / change_m), np.exp(-steps_m / alike_m)]),
         appearances,
         drawn,
     )
     product = (appearances * drawn * ahead * after).sum(axis=2)  # eq. 27
+    product = np.column_stack([product[:, :count], product[:, count:].sum(axis=1)])
     return np.asarray(product / product.sum(axis=1, keepdims=True))
+
+
+def _both_unnamed(probabilities: FloatArray) -> FloatArray:
+    """Of the terrains (k + 1,), with half of the last for each of two kinds without a name."""
+    return np.append(probabilities, probabilities[-1]) / ([1] * (len(probabilities) - 1) + [2, 2])
+
+
+def _by_appearance(given: FloatArray, wrong: float) -> FloatArray:
+    """Probability of each label (n, k) where a place resembles each of the k or none (n, k + 1)."""
+    count, alone = given.shape[1], REFUSED
+    by_name = (1 - alone) * ((1 - wrong) * given + wrong / count)
+    named = np.column_stack([by_name, np.full(len(given), alone / count)])
+    unnamed = np.append(np.full(count, alone), 1 - alone)
+    return np.where(given.any(axis=1, keepdims=True), named, unnamed)
 
 
 def _both_ways(
@@ -113,7 +140,7 @@ def _both_ways(
     appearances: FloatArray,
     drawn: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Forward and backward variables (n, k + 1, k), in one loop.
+    """Forward and backward variables (n, k + 2, k + 1), in one loop.
 
     The chain is reversible: what comes before, in shares of what is drawn, obeys the same step
     as the likelihood of what comes after. Backward variables hold the evidence of their place,
@@ -144,7 +171,7 @@ def _step(
     stays: AnyArray,
     changes: AnyArray,
 ) -> FloatArray:
-    """Likelihood (..., k + 1, k) by terrain and appearance, a step on.
+    """Likelihood (..., k + 2, k + 1) by terrain and appearance, a step on.
 
     `stays` and `changes` (2, ...) are the probabilities that terrain and appearance do so.
     """

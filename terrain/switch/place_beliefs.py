@@ -88,7 +88,9 @@ def by_evidence(
     change_m: float,
     alike_m: float,
 ) -> PlaceBeliefs:
-    """Each place has the probabilities of a chain along the way; `unknown` is no evidence.
+    """Each place has the probabilities of a chain along the way.
+
+    An `unknown` that is evidence makes a terrain without a name more probable.
 
     Parameters
     ----------
@@ -98,9 +100,9 @@ def by_evidence(
     accuracy, change_m, alike_m : float
         See `label_chain`.
     """
-    labelled = tuple(place_label for place_label in place_labels if place_label.label != UNKNOWN)
+    labelled = tuple(place_label for place_label in place_labels if place_label.is_evidence)
     names = _names(place_labels, before)
-    if not labelled:
+    if not labelled or names == (UNKNOWN,):
         return PlaceBeliefs.of((), names, np.empty((0, len(names))))
     count = len(names) - 1
     places = np.array([place_label.place for place_label in labelled])

@@ -33,6 +33,9 @@ class PlaceLabel:
         What the classifier gave to each terrain; empty where only the label is known.
     by_feel : bool
         Whether the label comes from terrain by feel, and not from an image.
+    is_evidence : bool
+        Of an ``unknown`` label: whether the image resembles no terrain with a name. One that shows
+        no terrain, or two side by side, says nothing.
     """
 
     label: str
@@ -42,6 +45,7 @@ class PlaceLabel:
     distance_ahead_m: float
     probabilities: Mapping[str, float] = field(default_factory=dict)
     by_feel: bool = False
+    is_evidence: bool = True
 
 
 @dataclass(frozen=True)

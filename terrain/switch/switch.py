@@ -1,5 +1,6 @@
 """The terrain in force: that of the labelled places under the footprint."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -11,7 +12,7 @@ from odometry.geometry import se2
 from odometry.run import UNKNOWN
 from odometry.run_terrains import Footing
 from terrain.switch.label_chain import carried
-from terrain.switch.place_beliefs import PlaceBeliefs, by_evidence, by_rows
+from terrain.switch.place_beliefs import LEAST, PlaceBeliefs, by_evidence, by_rows
 from terrain.switch.place_labels import DRIFT, Footprint, PlaceLabel, nearest
 
 MAJORITY = 0.5  # of the footprint; a terrain with more comes into force
@@ -110,7 +111,7 @@ class Switch:
         Of the terrains under the footprint, `unknown` among them; they add up to 1.
     supported_m : float
         Wheel travel where last the terrain in force was probably the one under the middle of the
-        footprint.
+        footprint; minus infinity where that is probably none with a name.
     unsupported_m : float
         Wheel travel since then.
     event : SwitchEvent or None
@@ -130,7 +131,11 @@ class Switch:
 
     @property
     def footing(self) -> Footing:
-        """The terrain under the robot; `unknown` where for long no label supports that in force."""
+        """The terrain under the robot.
+
+        `unknown` on one that probably has no name, and where for long no label supports the one in
+        force.
+        """
         if self.unsupported_m > self.config.unknown_m and not self.config.labels_in_row:
             return Footing.of(UNKNOWN)
         if not self.config.by_shares:
@@ -183,10 +188,11 @@ class Switch:
                 travel_m - place_label.travel_m,
             )
         in_force = terrain if event is not None else self.in_force
-        known = (
-            self.place_beliefs.probability(beliefs[0], name) for name in (self.in_force, in_force)
-        )
-        supported_m = travel_m if max(known) >= KNOWN else self.supported_m
+        supported_m = self.supported_m
+        if reached[0] and beliefs[0, -1] > LEAST:
+            supported_m = -math.inf
+        elif self._supports(self.place_beliefs, int(place[0]), beliefs[0], in_force):
+            supported_m = travel_m
         return replace(
             self,
             in_force=in_force,
@@ -195,6 +201,13 @@ class Switch:
             unsupported_m=travel_m - supported_m,
             event=event,
         )
+
+    def _supports(
+        self, place_beliefs: PlaceBeliefs, place: int, belief: FloatArray, in_force: str
+    ) -> bool:
+        """Whether a named place makes the terrain before or now in force probable at the middle."""
+        known = (place_beliefs.probability(belief, name) for name in (self.in_force, in_force))
+        return place_beliefs.place_labels[place].label != UNKNOWN and max(known) >= KNOWN
 
     def _shares(
         self, place_beliefs: PlaceBeliefs, beliefs: FloatArray, reached: BoolArray

