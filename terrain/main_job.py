@@ -79,7 +79,7 @@ def run_odometry(
         False reads no image: without another `source` one terrain is in force for the whole run.
     terrain : str, optional
         In force until the first switch; by default the run's own where `parameters` has it, else
-        `unknown`; without any source of terrain the first of `parameters`, else the run's own.
+        `unknown`; without any source of terrain the only one of `parameters`, else the run's own.
     config : Config, optional
     source : {"camera", "labels", "modes", "feel", "none"} or TerrainSource, optional
         The source of the terrain: the images, classified by `model`; the run's own column

@@ -42,8 +42,8 @@ class LiveOdometry:
     parameters : ParameterSet or path, optional
         Without effects: those are known along a whole run only.
     terrain : str, optional
-        In force until the first switch; by default "unknown", or the first of `parameters` where
-        neither images nor feel will name one.
+        In force until the first switch; by default "unknown", or the only one of `parameters`
+        where neither images nor feel will name one.
     config : Config, optional
         `[filter] causal` counts as set.
     source : TerrainSource, optional

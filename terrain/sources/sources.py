@@ -61,8 +61,8 @@ def source_name(
 def initial_terrain(named: str | None, parameters: ParameterSet, of_run: str | None = None) -> str:
     """The terrain in force until the first switch.
 
-    The one that was named; else the run's own where `parameters` has it, else the first of
-    `parameters`, else the run's own.
+    The one that was named; else the run's own where `parameters` has it, else the only one of
+    `parameters`, else the run's own, else ``unknown`` where `parameters` has several.
 
     Raises
     ------
@@ -72,8 +72,9 @@ def initial_terrain(named: str | None, parameters: ParameterSet, of_run: str | N
     if named == UNKNOWN:
         raise ParameterError(f"the terrain name {UNKNOWN!r} is reserved; name another, or none")
     own = None if of_run == UNKNOWN else of_run
-    known = own if own in parameters.terrains else next(iter(parameters.terrains), None)
-    return named or known or own or UNNAMED_TERRAIN
+    known = tuple(parameters.terrains)
+    of_set = own if own in known else known[0] if len(known) == 1 else None
+    return named or of_set or own or (UNKNOWN if known else UNNAMED_TERRAIN)
 
 
 def terrain_source(

@@ -10,8 +10,8 @@ from odometry.run import UNKNOWN
 # chosen with simulated labels, half of whose drives were kept for the figures
 UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name
 # of the appearances of a known terrain so many resemble none, and of the labels of an appearance
-# so many are `unknown` by themselves: what training refuses of known patches
-REFUSED = 0.05
+# so many are `unknown` by themselves: 0.05 to 0.15 of images of known terrain have no name
+REFUSED = 0.1
 # and of one without a name: either as few, or what photographs of terrains that were not in
 # training have, 0.38 of patches to 0.63 of photographs
 REFUSED_UNNAMED = np.array([REFUSED, 0.5])

@@ -5,20 +5,29 @@ from dataclasses import replace
 import pytest
 
 from odometry.errors import ParameterError
+from odometry.parameters import ParameterSet
 from odometry.run import Run
 from terrain.main_job import run_odometry
 from tests.terrain.test_run_odometry import SET
 
 
-def test_the_first_terrain_is_the_one_named_else_the_sets_first_else_the_runs(
+def test_the_first_terrain_is_the_one_named_else_the_sets_only_one_else_the_runs(
     tmp_path, world, curvy_run
 ):
     folder = world.drive_curves(tmp_path / "run")
     world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "sand"})
     assert run_odometry(folder, parameters=SET, terrain="mud").initial_terrain == "mud"
-    assert run_odometry(folder, parameters=SET).initial_terrain == "boards"
+    only = ParameterSet(dict(list(SET.terrains.items())[:1]))
+    assert run_odometry(folder, parameters=only).initial_terrain == "boards"
+    assert run_odometry(folder, parameters=SET).initial_terrain == "sand"
     assert run_odometry(folder).initial_terrain == "sand"
     assert run_odometry(curvy_run).initial_terrain == "ground"
+
+
+def test_without_a_source_no_table_of_several_is_in_force(curvy_run):
+    result = run_odometry(curvy_run, parameters=SET)
+    assert set(result.replay.terrains) == {result.initial_terrain} == {"unknown"}
+    assert result.learned.terrains == SET.terrains
 
 
 def test_with_images_a_start_that_nobody_named_is_unknown(across_run, classifier):
