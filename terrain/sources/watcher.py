@@ -12,7 +12,7 @@ from odometry.estimation.estimate import Estimate
 from odometry.estimation.transition import moved_pose
 from odometry.frames import Frame
 from odometry.geometry import se2
-from odometry.run import Robot
+from odometry.run import UNKNOWN, Robot
 from odometry.run_terrains import Footing
 from terrain.camera.camera import Camera
 from terrain.classification.trained import Classifier
@@ -124,10 +124,15 @@ class TerrainWatcher:
         return self._switch.footing
 
     def _beside(self, place_label: PlaceLabel) -> PlaceLabel:
-        """A label that gives no evidence on terrains which only feel can name."""
+        """A label that gives no evidence on terrains which only feel can name.
+
+        An image of one of these resembles none that the camera knows: beside feel, ``unknown``
+        says nothing.
+        """
         if self._felt is None:
             return place_label
-        return replace(place_label, probabilities=self._felt.beside(place_label.probabilities))
+        beside = self._felt.beside(place_label.probabilities)
+        return replace(place_label, probabilities=beside, is_evidence=place_label.label != UNKNOWN)
 
     def _feel(self, frame: Frame, pose: FloatArray) -> None:
         """Add the labels by feel up to a frame."""

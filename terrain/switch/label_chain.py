@@ -59,7 +59,7 @@ def smoothed(
 
     There are k named terrains and one that is none of them. A place has the appearance of one of
     the k, or resembles none. On a named terrain it is usually its own, seldom another or none; on
-    the one without a name none in half of the places, else each of the k with equal probability.
+    one without a name each of the k with equal probability, and none as seldom or half the time.
     Between places a distance s apart the terrain stays with probability exp(-s / change_m), and is
     else drawn again. Where it stays, the appearance stays with probability exp(-s / alike_m), and
     is else drawn again. A label names the appearance, or seldom another. Half of the wrong labels

@@ -165,3 +165,33 @@ def test_a_robot_astride_an_edge_is_seen_as_such(watch):
     assert watched.watcher.image_labels[1].reason == "astride: snow on the left, mud on the right"
     assert watched.watcher.image_labels[1].confidence == 0.7  # of the less certain
     assert set(watched.watcher.in_force) == {"mud"}
+
+
+class UnknownIfDark(ByBrightness):
+    """Says that dark images resemble no terrain."""
+
+    def classify(self, images):
+        return [
+            dataclasses.replace(of, label="unknown") if of.label == "mud" else of
+            for of in super().classify(images)
+        ]
+
+
+class FeltNothing:
+    """A source by feel that names terrains which the camera does not know."""
+
+    def between(self, *_):
+        return iter(())
+
+    def beside(self, seen):
+        return {**seen, "ice": 0.5}
+
+
+@pytest.mark.parametrize("felt", [None, FeltNothing()])
+def test_an_image_that_resembles_no_terrain_says_nothing_beside_feel(watch, felt):
+    """It may be of a terrain that feel alone knows."""
+    watched = watch([DARK, BRIGHT], UnknownIfDark())
+    watched.watcher._felt = felt
+    drive(watched)
+    of = [(each.label, each.is_evidence) for each in watched.watcher._switch.place_labels]
+    assert of == [("unknown", felt is None), ("snow", True)]
