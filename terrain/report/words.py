@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from odometry.evaluation.score import Score
+from odometry.run import UNKNOWN
 from terrain.report.lines import (
     GYROSCOPE,
     IDEAL,
@@ -100,7 +101,7 @@ def notes(lines: ReportLines) -> list[str]:
         )
     if result.reference_name == "truth":
         found.append("Errors are against truth.csv, which no estimator has used.")
-    if result.source == "none":
+    if result.source == "none" and result.initial_terrain != UNKNOWN:
         found.append(
             f"There was no source of terrain (no vision, no other): {result.initial_terrain} was "
             "in force throughout."

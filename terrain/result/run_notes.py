@@ -31,6 +31,7 @@ def run_notes(result: RunResult) -> list[str]:
     classifier = None if result.watcher is None else result.watcher.classifier
     return [
         *name_notes(result.initial_terrain, classifier, result.parameters),
+        *_unnamed(result),
         *([] if result.watcher is None else _images(result.watcher)),
         *_refused(result),
         *sentences(sets_against_poses(result)),
@@ -45,6 +46,16 @@ def event_lines(result: RunResult) -> list[str]:
     if len(events) > FEW_EVENTS:
         lines.append(f"{len(events) - FEW_EVENTS} more events of the filter, see result.json")
     return lines
+
+
+def _unnamed(result: RunResult) -> list[str]:
+    """Say that nothing names the terrain of a set of several."""
+    if result.source != "none" or result.initial_terrain != UNKNOWN:
+        return []
+    return [
+        "the terrain is unknown throughout: there is no source of terrain (no vision, no other), "
+        f"and the parameter set has {', '.join(result.parameters.terrains)}. --terrain names one"
+    ]
 
 
 def _images(watcher: TerrainWatcher) -> list[str]:

@@ -11,7 +11,9 @@ from terrain.image_labels.image_label import ASTRIDE
 from terrain.result.run_notes import event_lines, run_notes
 
 
-def result(initial="gravel", tables=("gravel",), classes=None, *, refused=0, events=()):
+def result(
+    initial="gravel", tables=("gravel",), classes=None, *, refused=0, events=(), source="camera"
+):
     watcher = (
         None
         if classes is None
@@ -25,6 +27,7 @@ def result(initial="gravel", tables=("gravel",), classes=None, *, refused=0, eve
         initial_terrain=initial,
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
+        source=source,
         run=SimpleNamespace(pose=None, terrain=None, began_s=1000.0),
         replay=SimpleNamespace(
             innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
@@ -38,6 +41,15 @@ def test_nothing_to_say():
     assert run_notes(result(classes=["gravel"])) == []
     assert run_notes(result()) == []
     assert run_notes(result(initial="ground", tables=())) == []
+
+
+def test_a_set_of_several_terrains_of_which_nothing_names_one():
+    of_two = {"tables": ("gravel", "mud"), "source": "none"}
+    (hint,) = run_notes(result(initial="unknown", **of_two))
+    assert hint.startswith("the terrain is unknown throughout")
+    assert hint.endswith("has gravel, mud. --terrain names one")
+    assert run_notes(result(initial="mud", **of_two)) == []
+    assert run_notes(result(initial="unknown", tables=("gravel", "mud"))) == []
 
 
 def test_images_that_are_unlike_the_training_photographs_come_before_their_labels():
