@@ -90,16 +90,18 @@ def evaluated_with(second: SecondReplay) -> str:
 
 
 def simple_is_better(scores: Mapping[str, Score]) -> list[str]:
-    """A sentence where a trajectory that needs no fit has a smaller error than the odometer."""
+    """A sentence where a trajectory that needs no fit has no larger error than the odometer."""
     own = scores["odometer"].mean_translation_per_m
     errors = {name: scores[name].mean_translation_per_m for name in NEEDS_NO_FIT if name in scores}
     better = {error: name for name, error in errors.items() if error is not None}
     if own is None or not better or min(better) >= own:
         return []
     least = min(better)
+    stated, of_own = f"{least:.4f}", f"{own:.4f}"
     return [
-        f"{_capital(NEEDS_NO_FIT[better[least]])}, which needs no fit, is better here: "
-        f"{least:.4f} against {own:.4f} m per m of wheel travel."
+        f"{_capital(NEEDS_NO_FIT[better[least]])}, which needs no fit, is "
+        f"{'as good' if stated == of_own else 'better'} here: {stated} against {of_own} m per m "
+        "of wheel travel."
     ]
 
 

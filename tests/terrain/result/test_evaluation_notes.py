@@ -24,6 +24,8 @@ def test_the_best_of_the_simple_ones_is_named():
     )
     (sentence,) = simple_is_better(scores(differential_drive=0.06, odometer=0.076))
     assert sentence.startswith("The ideal differential drive")
+    (sentence,) = simple_is_better(scores(gyroscope=0.00611, odometer=0.00614))
+    assert "is as good here: 0.0061 against 0.0061" in sentence
 
 
 @pytest.mark.parametrize("missing", ["differential_drive", "odometer"])
