@@ -56,8 +56,3 @@ class LiveStep:
     switch: SwitchEvent | None = None
     felt: FeltAnswer | None = None
     contradiction: Contradiction | None = None
-
-    @property
-    def sighting(self) -> ImageLabel | None:
-        """`image_label` under its old name, for one version."""
-        return self.image_label

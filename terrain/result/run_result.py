@@ -94,11 +94,6 @@ class RunResult:
     source: str = "none"
     contradictions: tuple[Contradiction, ...] = ()
 
-    @property
-    def judged(self) -> dict[str, EvaluatedTrajectory]:
-        """`evaluated` under its old name, for one version."""
-        return self.evaluated
-
     @cached_property
     def evaluated(self) -> dict[str, EvaluatedTrajectory]:
         """Every trajectory that can be evaluated fairly, with the poses that it is compared with.

@@ -91,11 +91,6 @@ class TerrainWatcher:
         self._frame: Frame | None = None
         self._travel_m = 0.0
 
-    @property
-    def sightings(self) -> list[ImageLabel]:
-        """`image_labels` under their old name, for one version."""
-        return self.image_labels
-
     def terrain(self, frame: Frame, estimate: Estimate) -> Footing:
         """Classify the frame's image, if it has one, and return the terrain under the robot."""
         self._travel_m += self._travelled_m(frame)

@@ -85,11 +85,6 @@ class SwitchEvent:
     waited_s: float
     waited_m: float
 
-    @property
-    def sight(self) -> PlaceLabel:
-        """`first_label` under its old name, for one version."""
-        return self.first_label
-
 
 @dataclass(frozen=True)
 class Switch:

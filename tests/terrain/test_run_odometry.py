@@ -56,13 +56,6 @@ def test_every_image_of_the_run_was_looked_at(across_result, across_run):
     assert len(across_result.watcher.in_force) == len(files)
 
 
-def test_names_of_version_0_10_are_readable(across_result):
-    watcher = across_result.watcher
-    assert watcher.sightings is watcher.image_labels
-    assert all(event.sight is event.first_label for event in watcher.events)
-    assert across_result.judged is across_result.evaluated
-
-
 @pytest.fixture(scope="module")
 def by_set(across_run, classifier):
     """The same run with the parameters of SET."""

@@ -53,7 +53,6 @@ def written(result, folder):
 def with_steps(result, steps):
     """A result whose estimates, image labels and switches are those of live steps."""
     seen = [step for step in steps if step.image_label is not None]
-    assert all(step.sighting is step.image_label for step in seen)  # its old name
     folder = result.run.folder
     image_labels = [
         replace(s.image_label, image=Path(s.image_label.image).relative_to(folder).as_posix())
