@@ -50,6 +50,7 @@ from odometry.checks.treads.tread_motion import tread_motion
 from odometry.checks.treads.tread_samples import tread_samples
 from odometry.checks.treads.treads import equal_treads, treads
 from odometry.checks.treads.unsigned import unsigned
+from odometry.checks.treads.wrapped_counts import unwrapped
 from odometry.checks.unexplained.disagreement import sensors_disagree
 from odometry.checks.unexplained.unrelated_turns import agreement, yaw_against_course
 from odometry.checks.units.units import units
@@ -140,10 +141,11 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     if len(run.odometry) < LEAST_ROWS:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     with np.errstate(over="ignore", invalid="ignore"):
+        wrapped, run = unwrapped(run)
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
         confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
-    findings = in_order([*copies, *confirmed_ones])
+    findings = in_order([*wrapped, *copies, *confirmed_ones])
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 
 

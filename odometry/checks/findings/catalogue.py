@@ -54,6 +54,7 @@ CATALOGUE: dict[str, str] = {
     "stuck_encoder": "one tread lost",
     "slow_speeds_zero": "slow speeds of one tread that read zero",
     "interleaved_rows": "rows of two sources in one file",
+    "counts_wrapped": "counters of the encoders that began anew",
     "absurd_speed": "single corrupt samples",
     "placeholder_speeds": "one value where nothing was measured",
     "dropped_speeds": "zeros amid motion",
