@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.findings.finding import Finding, Level
+from odometry.windows.spans import runs_of, touched
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
 MOSTLY = 0.75  # share of the windows of such times in which the tread is slow
@@ -26,6 +27,10 @@ NEARLY = 1.5
 # starts: below 0.1 at each end of three such times of dead zones in real drives, above at one end
 # of 26 of 27 encoders that were lost.
 QUIET = 0.1
+# Share of the rows in which the other tread moves, and this one reads zero outside these times as
+# well: 0.075 and more of ten dead zones and least readings of real drives, 0.027 and less of 53
+# encoders that were lost for a time, and 0.059 of one.
+ELSEWHERE, MOVING = 0.05, 0.1  # of the ordinary fastest speed
 Spans = list[tuple[float, float]]
 
 
@@ -56,7 +61,8 @@ def slow_speeds_zero(evidence: Evidence, name: str, spans: Spans, times: str) ->
 def or_slow(evidence: Evidence, name: str, spans: Spans) -> str:
     """What else it may be where a tread reads zero, and moves slowly in most of these spans.
 
-    Or at about the slowest speed that it reads anywhere, or nobody knows how fast.
+    Or at about the slowest speed that it reads anywhere, or nobody knows how fast; or where it
+    often reads zero elsewhere, as no encoder does that was lost for these times alone.
     """
     side, fastest_m_s = ("v_left", "v_right").index(name), evidence.fastest_m_s
     speed_m_s = _speed_m_s(evidence, spans, side)
@@ -67,9 +73,25 @@ def or_slow(evidence: Evidence, name: str, spans: Spans) -> str:
         moves = "it slows down to zero, and starts from zero, as a tread that stops"
     elif least_m_s > 0 and (speed_m_s < NEARLY * least_m_s or not np.isfinite(speed_m_s)):
         moves = f"it reads none between 0 and {least_m_s:.2g} m/s"
+    elif (share := _zero_elsewhere(evidence, spans, side)) > ELSEWHERE:
+        moves = (
+            f"it reads zero at other times as well, in {100 * share:.0f} % of the rows in which "
+            "the other one moves"
+        )
     else:
         return ""
     return f"slow speeds read zero (a dead band, play of the gear): {moves}"
+
+
+def _zero_elsewhere(evidence: Evidence, spans: Spans, side: int) -> float:
+    """Share of the rows with the other tread in motion that read zero, but for zeros of spans."""
+    stamps_s, sizes = evidence.stamps_s, np.abs(evidence.speeds_m_s) / evidence.fastest_m_s
+    zero, moving = sizes[:, side] < STANDING, sizes[:, 1 - side] > MOVING
+    runs = runs_of(zero)
+    here = touched(np.array(spans), stamps_s[runs[:, 0]], stamps_s[runs[:, 1] - 1])
+    for first, end in runs[here]:
+        moving[first:end] = False
+    return float(np.mean(zero[moving])) if moving.any() else 0.0
 
 
 def _slows_to_zero(evidence: Evidence, span_s: tuple[float, float], side: int) -> bool:

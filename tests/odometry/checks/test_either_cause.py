@@ -8,6 +8,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.slow_speeds import or_slow
+from odometry.checks.treads.unsigned import unsigned
 from tests.odometry.checks.faulty import put, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
 from tests.odometry.checks.test_other_robots import PERIOD_S, drive, table, winding
@@ -27,6 +28,18 @@ def test_a_tread_that_slows_to_zero_may_be_in_a_dead_zone():
     spans = [(63.0, 71.0)]
     assert "slows down to zero" in or_slow(Evidence(slows), "v_left", spans)
     assert "slows down" not in or_slow(Evidence(lost), "v_left", spans)
+
+
+def test_a_tread_that_reads_zero_elsewhere_as_well_may_be_in_a_dead_zone():
+    """An encoder that was lost for a time reads zero in that time."""
+    run = winding(4000)
+    moves = np.where((AT_S > 60) & (AT_S < 74), 0.0, run.odometry["v_left"])
+    often = np.where(AT_S % 10 < 1.5, 0.0, moves)
+    spans = [(63.0, 71.0)]
+    assert "reads zero at other times as well" in or_slow(
+        Evidence(put(run, "odometry", v_left=often)), "v_left", spans
+    )
+    assert or_slow(Evidence(put(run, "odometry", v_left=moves)), "v_left", spans) == ""
 
 
 def test_a_tread_that_reads_slow_speeds_as_one_is_not_lost_as_a_fact():
@@ -78,6 +91,18 @@ def test_equal_numbers_may_be_one_speed_and_no_lost_signs():
     assert plain.cause.startswith("Tread speeds have lost their sign")
     assert equal.cause.startswith("Either")
     assert "both columns hold one speed" in equal.cause
+
+
+def test_turns_to_one_side_alone_may_be_of_a_tread_that_reads_too_little():
+    """Where both columns are equal, a dead zone of one tread is always a turn to its side."""
+    turn = 0.4 + 0.15 * np.sin(AT_S / 4)
+    run = replace(drive(0.33 + 0.06 * np.sin(AT_S / 9), turn), pose=None)
+    dead = treads(run, lambda left, right: (left, np.maximum(right - 0.36, 0)))
+    names = [finding.name for finding in unsigned(Evidence(dead))]
+    assert names == ["treads_unsigned"]
+    assert next(unsigned(Evidence(dead))).cause.startswith("Either tread speeds have lost")
+    lost = next(unsigned(Evidence(spinning_without_signs())))
+    assert lost.cause.startswith("Tread speeds have lost their sign")
 
 
 def test_one_speed_in_both_columns_is_a_fact_where_two_sensors_measure_turns():
