@@ -78,8 +78,8 @@ def _by_one_delay(
     evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
 ) -> Finding:
     """The finding where one delay explains it best; what is known where it does not, or may not."""
-    if finding.name == "clocks_apart":
-        return _apart_or_set(evidence, finding, lags)
+    if finding.name in OR_SET:
+        return OR_SET[finding.name](evidence, finding, lags)
     if finding.name not in LATE:
         return finding
     found = list(answers(evidence, LATE[finding.name], lags))
@@ -104,6 +104,17 @@ def _apart_or_set(
         apart = finding.cause[:1].lower() + finding.cause[1:]
         return replace(finding, cause=f"Either {apart}; or one was set: {words}")
     return finding
+
+
+def _commands_or_set(
+    evidence: Evidence, finding: Finding, lags: dict[tuple[str, str], Lag]
+) -> Finding:
+    """Commands, which a robot follows late all the time; what is known where the lag has a step."""
+    stepped = [answer for answer in answers(evidence, "treads", lags) if answer.is_stepped]
+    return disagreement(f"{finding.seen}, but {stepped[0].in_steps}") if stepped else finding
+
+
+OR_SET = {"clocks_apart": _apart_or_set, "treads_are_commands": _commands_or_set}
 
 
 def _goes_along(evidence: Evidence, finding: Finding) -> bool | None:

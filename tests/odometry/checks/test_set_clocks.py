@@ -9,10 +9,11 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.finding import Level
+from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
-from tests.odometry.checks.faulty import pose_stamps
+from tests.odometry.checks.faulty import pose_stamps, put
 from tests.odometry.checks.test_confirmed_causes import warnings
 from tests.odometry.checks.test_one_delay import stepping
 
@@ -65,3 +66,21 @@ def test_a_clock_that_was_set_is_named_and_undone(step_s):
 def test_a_sensor_that_is_never_on_time_has_no_clock_that_was_set():
     run = pose_stamps(stepping(), lambda t: t + np.where(t > 80, 1.3, 0.6))
     assert list(stepping_clocks(Evidence(run))) == []
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_lag_with_a_step_is_not_that_of_commands(seed):
+    """A robot follows its commands late all the time."""
+    run = replace(stepping(seed), pose=None)
+    at_s = run.odometry.stamps_s
+
+    def ahead(by_s):
+        return put(
+            run,
+            "odometry",
+            **{name: np.interp(at_s + by_s, at_s, run.odometry[name]) for name in TREADS},
+        )
+
+    (found,) = check_recording(ahead(0.25 * (at_s > 60))).at(Level.WARNING)
+    assert found.name == "sensors_disagree"
+    assert "as by a clock that was set or stamps that jump" in found.seen
