@@ -15,6 +15,7 @@ BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 AT_ONCE = 0.5  # share of a jump that one or two steps of the poses themselves hold
 BESIDE = 3  # steps, whose median is the rate before and after
+BESIDE_S = 0.5  # and their mean over so long at least: where poses come in bursts, steps are uneven
 
 
 def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
@@ -98,7 +99,8 @@ def jumps_by_itself(stamps_s: FloatArray, values: FloatArray, at: int, size: flo
     """Whether a series jumps near a row, and not what it is compared with.
 
     Two steps in a row change it by half of the size, beyond what it changes by at the rates just
-    before and after. A robot that starts, stops or turns round has rates between these.
+    before and after, by their medians and by their means. A robot that starts, stops or turns
+    round has rates between these.
 
     Parameters
     ----------
@@ -111,17 +113,36 @@ def jumps_by_itself(stamps_s: FloatArray, values: FloatArray, at: int, size: flo
     """
     reach_s = max(FAR_S, 1.5 * float(np.median(np.diff(stamps_s))))
     first, last = np.searchsorted(stamps_s, stamps_s[at] + np.array([-reach_s, reach_s]))
-    near = slice(max(first - 2 - BESIDE, 0), last + 2 + BESIDE)
-    stamps_s, values = stamps_s[near], values[near]
-    rates = np.diff(values, axis=0) / np.diff(stamps_s)[:, None]
-    for row in range(BESIDE, len(rates) - BESIDE - 1):
-        before, after = rates[row - BESIDE : row], rates[row + 2 : row + 2 + BESIDE]
+    for row in range(max(first - 2, BESIDE), min(last, len(values) - BESIDE - 2)):
         lasts_s = float(stamps_s[row + 2] - stamps_s[row])
         rate = (values[row + 2] - values[row]) / lasts_s
-        beyond = _beyond(rate, np.median(before, axis=0), np.median(after, axis=0))
-        if beyond * lasts_s > AT_ONCE * size:
+        medians = (_median_rate(stamps_s[of], values[of]) for of in _beside(row, BESIDE, BESIDE))
+        if _beyond(rate, *medians) * lasts_s <= AT_ONCE * size:
+            continue
+        means = (_mean_rate(stamps_s[of], values[of]) for of in _long_beside(stamps_s, row))
+        if _beyond(rate, *means) * lasts_s > AT_ONCE * size:
             return True
     return False
+
+
+def _beside(row: int, before: int, after: int) -> tuple[slice, slice]:
+    """Rows of so many steps before two steps, the first of which is from a row, and after them."""
+    return slice(row - before, row + 1), slice(row + 2, row + 3 + after)
+
+
+def _long_beside(stamps_s: FloatArray, row: int) -> tuple[slice, slice]:
+    """The same of steps that last for BESIDE_S at least, as far as there are stamps (M,)."""
+    first = np.searchsorted(stamps_s, stamps_s[row] - BESIDE_S, side="right") - 1
+    last = np.searchsorted(stamps_s, stamps_s[row + 2] + BESIDE_S)
+    return _beside(row, max(row - max(int(first), 0), BESIDE), max(int(last) - row - 2, BESIDE))
+
+
+def _median_rate(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
+    return np.asarray(np.median(np.diff(values, axis=0) / np.diff(stamps_s)[:, None], axis=0))
+
+
+def _mean_rate(stamps_s: FloatArray, values: FloatArray) -> FloatArray:
+    return np.asarray((values[-1] - values[0]) / (stamps_s[-1] - stamps_s[0]))
 
 
 def _beyond(rate: FloatArray, before: FloatArray, after: FloatArray) -> float:

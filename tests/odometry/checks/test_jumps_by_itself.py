@@ -35,6 +35,16 @@ def test_starts_stops_and_turns_round_are_none(speeds):
         assert not jumps_by_itself(stamps_s, positions, row, 0.4)
 
 
+def test_poses_that_come_in_bursts_do_not_jump():
+    """Six at a time: a long step, then five short ones."""
+    stamps_s, positions = drive([1.5] * 12)
+    rows = np.arange(36)
+    stamps_s[42:78] = stamps_s[42] + 0.6 * (rows // 6) + 0.05 * (rows % 6) + 0.25
+    assert not any(jumps_by_itself(stamps_s, positions, row, 0.7) for row in range(45, 75))
+    positions[60:] += (1.5, 0.0)
+    assert jumps_by_itself(stamps_s, positions, 60, 1.5)
+
+
 def test_noise_is_none(rng):
     stamps_s, positions = drive([1.0] * 10)
     noisy = positions + rng.normal(scale=0.02, size=positions.shape)
