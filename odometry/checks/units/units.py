@@ -11,7 +11,7 @@ from odometry.checks.evidence.relation import Relation, pieces
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import times
 from odometry.checks.treads.proportion import holds_the_mean
-from odometry.checks.units.constant_along import reads_less
+from odometry.checks.units.constant_along import reads_less, turns_less
 from odometry.checks.units.effective_width import (
     ORDINARY_WIDTH,
     PLAUSIBLE_M_S,
@@ -69,8 +69,9 @@ def units(evidence: Evidence) -> Iterator[Finding]:
         yield _along(evidence, forward, forward_tight, width)
     elif (straight := beyond_treads(evidence)) is not None:
         yield _on_straight_lines(evidence, straight, forward)
-    if width is not None and width < WIDTH[0] and (mean := holds_the_mean(evidence)):
-        yield disagreement(mean)
+    narrow = width is not None and width < WIDTH[0]
+    if narrow and (otherwise := holds_the_mean(evidence) or turns_less(evidence)):
+        yield disagreement(otherwise)
     elif width is not None and not WIDTH[0] <= width <= WIDTH[1]:
         # one scale of the treads lengthens their way and widens the robot by the same factor
         one_scale = forward is not None and not low <= forward <= high

@@ -9,7 +9,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.slow_speeds import or_slow
 from odometry.checks.treads.unsigned import unsigned
-from tests.odometry.checks.faulty import put, treads, yaw
+from tests.odometry.checks.faulty import put, treads, width, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
 from tests.odometry.checks.test_other_robots import PERIOD_S, drive, table, winding
 
@@ -63,6 +63,20 @@ def test_a_dead_zone_is_no_scale():
     assert "a dead zone" in found.seen
     scaled = first(treads(run, lambda left, right: (0.6 * left, 0.6 * right)))
     assert scaled.name in {"scale", "tread_unit"}
+
+
+def test_a_dead_zone_is_no_narrow_robot():
+    spins = AT_S % 20 > 6
+    turn = np.where(spins, 0.9 * np.sin(AT_S / 3) + 0.8 * np.sign(np.sin(AT_S / 3)), 0.0)
+    run = width(drive(np.where(spins, 0.0, 0.8), turn), 1.4)
+
+    def less(left, right):
+        return tuple(np.sign(v) * np.maximum(np.abs(v) - 0.25, 0) for v in (left, right))
+
+    dead = treads(replace(run, pose=None), less)
+    assert first(dead).name == "sensors_disagree"
+    assert "track widths wide; as if" in first(dead).seen
+    assert first(width(replace(run, pose=None), 1.3)).name == "track_width"
 
 
 def test_a_twist_without_a_way_along_may_be_a_tread_that_is_not_read():
