@@ -45,8 +45,9 @@ def blocked_turns(evidence: Evidence) -> Iterator[Finding]:
             Level.NOTE if slips else Level.WARNING,
             f"the treads turn on the spot {times(in_run_time)} of run time, while the gyroscope "
             "reads that the robot does not turn",
-            f"{BLOCKED}; or the treads read wrong there: odometry is lost and the log repeats its "
-            "last values, or a tread has lost its sign or its scale",
+            f"Either {BLOCKED[0].lower()}{BLOCKED[1:]}; or the treads read wrong there: odometry "
+            "is lost and the log repeats its last values, or a tread has lost its sign, its scale "
+            "or its slow speeds (a dead zone)",
             "Cut the recording with --from and --to",
             tuple(in_run_time),
         )

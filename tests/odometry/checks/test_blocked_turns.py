@@ -70,7 +70,7 @@ def test_currents_that_go_on_changing_show_a_blocked_robot():
 def test_speeds_that_change_are_those_of_a_blocked_robot():
     found = only(standing(winding(), noise_m_s=0.01))
     assert (found.name, found.level) == ("turn_blocked", Level.WARNING)
-    assert found.cause.startswith("The robot is blocked or its wheels spin")
+    assert found.cause.startswith("Either the robot is blocked or its wheels spin")
 
 
 @pytest.mark.parametrize("noise_m_s", [0.0, 0.01])
