@@ -59,8 +59,14 @@ class ImageLabel:
         ``unknown`` says that it resembles none with a name; not where a name is doubtful, the image
         white or black, or where the tread strips differ.
         """
-        of_nothing = (ASTRIDE, DOUBTFUL, BY_LIGHT, OVEREXPOSED, DARK)
-        return self.label != UNKNOWN or not self.reason.startswith(of_nothing)
+        of_nothing = (DOUBTFUL, BY_LIGHT, OVEREXPOSED, DARK)
+        says_nothing = self.is_astride or self.reason.startswith(of_nothing)
+        return self.label != UNKNOWN or not says_nothing
+
+    @property
+    def is_astride(self) -> bool:
+        """Whether the tread strips, classified apart, differ."""
+        return self.left != self.right
 
 
 def answered(

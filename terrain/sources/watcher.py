@@ -103,9 +103,14 @@ class TerrainWatcher:
             self.image_labels.append(image_label)
             if image_label.label and image_label.region is not None:
                 given = self.seen.weighed(image_label.label, image_label.probabilities)
-                place_label = _place_label(image_label, image_label.region, given, pose, travel_m)
-                if self.seen.is_far:
-                    place_label = replace(place_label, is_evidence=True)
+                place_label = _place_label(
+                    image_label,
+                    image_label.region,
+                    given,
+                    pose,
+                    travel_m,
+                    is_evidence=self._is_evidence(image_label),
+                )
                 self._switch = self._switch.add_label(self._beside(place_label))
         self._feel(frame, pose)
         self._switch = self._switch.at(frame.stamp_s, pose, travel_m)
@@ -118,16 +123,21 @@ class TerrainWatcher:
                 del one[: -self._keep]
         return self._switch.footing
 
-    def _beside(self, place_label: PlaceLabel) -> PlaceLabel:
-        """A label that gives no evidence on terrains which only feel can name.
+    def _is_evidence(self, image_label: ImageLabel) -> bool:
+        """Whether a label says something of the terrain.
 
-        An image of one of these resembles none that the camera knows: beside feel, ``unknown``
-        says nothing.
+        Beside feel ``unknown`` does not: a terrain that feel alone knows resembles none that the
+        camera knows. Where the images are far from training, doubtful names speak for no terrain.
         """
+        if image_label.label == UNKNOWN and self._felt is not None:
+            return False
+        return image_label.is_evidence or (self.seen.is_far and not image_label.is_astride)
+
+    def _beside(self, place_label: PlaceLabel) -> PlaceLabel:
+        """A label that gives no evidence on terrains which only feel can name."""
         if self._felt is None:
             return place_label
-        beside = self._felt.beside(place_label.probabilities)
-        return replace(place_label, probabilities=beside, is_evidence=place_label.label != UNKNOWN)
+        return replace(place_label, probabilities=self._felt.beside(place_label.probabilities))
 
     def _feel(self, frame: Frame, pose: FloatArray) -> None:
         """Add the labels by feel up to a frame."""
@@ -187,6 +197,8 @@ def _place_label(
     given: Mapping[str, float],
     pose: FloatArray,
     travel_m: float,
+    *,
+    is_evidence: bool,
 ) -> PlaceLabel:
     return PlaceLabel(
         image_label.label,
@@ -195,5 +207,5 @@ def _place_label(
         se2.transform(pose, region.place),
         region.distance_ahead_m,
         given,
-        is_evidence=image_label.is_evidence,
+        is_evidence=is_evidence,
     )

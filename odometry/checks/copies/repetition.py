@@ -121,7 +121,7 @@ class _Trial:
             noise_of((1 - found.of_changes) * float(np.mean(self._changes**2))),
         )
 
-    def _fitted(self, delay_s: float, smoothed_s: float) -> "_Fitted":
+    def _fitted(self, delay_s: float, smoothed_s: float) -> _Fitted:
         columns, changes = self.columns(self.sources, delay_s, smoothed_s), self._changes
         of_columns = np.diff(columns, ORDER)[:, self._ordinary]
         design = np.vstack([columns, np.ones(len(self.values))])

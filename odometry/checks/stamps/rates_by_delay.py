@@ -1,5 +1,7 @@
 """Rates of headings at many delays, and what these leave of those of another sensor."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from odometry.arrays import FloatArray
@@ -53,3 +55,17 @@ def two_delays(squares: FloatArray) -> tuple[float, int, int, float]:
     part = int(np.argmin(left)) + LEAST_PARTS
     rows = int(np.argmin(before[:, part])), int(np.argmin(after[:, part]))
     return float(left.min()), *rows, (part + 1) / PARTS
+
+
+def left_by_growing(
+    squares: FloatArray, delays_s: FloatArray, lags_s: Iterable[FloatArray]
+) -> float:
+    """The least of squares (D, N) by even delays (D,) that one of some lags, each (N,), leaves."""
+    every, step_s = np.arange(squares.shape[1]), float(delays_s[1] - delays_s[0])
+    rows = (np.round((of - delays_s[0]) / step_s).astype(int) for of in lags_s)
+    return min(float(np.sum(squares[np.clip(of, 0, len(delays_s) - 1), every])) for of in rows)
+
+
+def moment_of(stamps_s: FloatArray, share: float) -> float:
+    """The stamp after a share of stamps (N,)."""
+    return float(stamps_s[min(int(share * len(stamps_s)), len(stamps_s) - 1)])

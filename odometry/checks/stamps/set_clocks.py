@@ -13,6 +13,8 @@ from odometry.checks.stamps.rates_by_delay import (
     STEP_S,
     centred,
     left_by,
+    left_by_growing,
+    moment_of,
     rate,
     two_delays,
     width_s,
@@ -47,15 +49,12 @@ def step_of_lag(evidence: Evidence, pair: tuple[str, str], lag: Lag) -> tuple[st
         return "", False
     at_s, squares, _ = found
     middle_s = float(evidence.stamps_s[[0, -1]].mean())
-    grown = np.inf
-    for growth in GROWTHS:
-        lags_s = lag.seconds + growth * lag.drift * (at_s - middle_s)
-        rows = np.clip(np.round((lags_s - delays_s[0]) / STEP_S), 0, len(delays_s) - 1)
-        grown = min(grown, float(np.sum(squares[rows.astype(int), np.arange(len(at_s))])))
+    growing_s = (lag.seconds + of * lag.drift * (at_s - middle_s) for of in GROWTHS)
+    grown = left_by_growing(squares, delays_s, growing_s)
     stepped, before, after, share = two_delays(squares)
     if stepped > grown / CLEARLY:
         return "", False
-    moment_s = evidence.run_time_s(float(at_s[min(int(share * len(at_s)), len(at_s) - 1)]))
+    moment_s = evidence.run_time_s(moment_of(at_s, share))
     words = (
         f"a lag of {delays_s[before]:+.2f} s before {moment_s:.0f} s of run time, and of "
         f"{delays_s[after]:+.2f} s after, as of a clock that was set"

@@ -9,7 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import stamps_moved
 from odometry.checks.stamps.late_stamps import CLEARLY
-from odometry.checks.stamps.rates_by_delay import two_delays
+from odometry.checks.stamps.rates_by_delay import left_by_growing, moment_of, two_delays
 from odometry.checks.stamps.set_clocks import left_by_delays
 from odometry.checks.stamps.timing import headings_by_sensor
 
@@ -100,12 +100,8 @@ def _step(evidence: Evidence, pair: tuple[str, str]) -> Step | None:
     if left > HALF * one or left > (1 - HELD) * whole or abs(after_s - before_s) < LEAST_S:
         return None
     along = np.linspace(-0.5, 0.5, len(at_s))
-    every = np.arange(len(at_s))
-    grown = min(
-        float(np.sum(squares[np.clip(rows + middle, 0, len(squares) - 1), every]))
-        for rows in (np.round(growth_s * along / 0.05).astype(int) for growth_s in GROWTHS_S)
-        for middle in range(len(squares))
-    )
+    growing_s = (middle_s + of_s * along for of_s in GROWTHS_S for middle_s in DELAYS_S)
+    grown = left_by_growing(squares, DELAYS_S, growing_s)
     if left > CLEARLY * grown:
         return None
-    return Step(pair, float(at_s[min(int(share * len(at_s)), len(at_s) - 1)]), before_s, after_s)
+    return Step(pair, moment_of(at_s, share), before_s, after_s)

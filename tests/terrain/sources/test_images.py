@@ -217,6 +217,15 @@ def test_doubtful_names_are_evidence_of_no_name_where_images_are_far_from_traini
     assert of == [("unknown", is_evidence), ("snow", True), ("snow", True)]
 
 
+def test_two_names_side_by_side_are_no_evidence_however_far_images_are_from_training(watch):
+    half = DARK.copy()
+    half[:, :80] = 200
+    watched = watch([half, BRIGHT, BRIGHT], per_tread=True)
+    labels_of_a_run(watched, Likeness(20, 0.5, 0.5, (), beyond=1.8))
+    of = [each.is_evidence for each in watched.watcher._switch.place_labels]
+    assert of == [False, True, True]
+
+
 class GivenLikeness(RunLikeness):
     """Of a run whose images are as they are said to be."""
 
