@@ -15,13 +15,12 @@ from odometry.io.formats import format_line
 
 FORMAT = 1
 NOT_MEASURED = 1e6  # variance by which drivers of ROS say that a component is not measured
-STATE = 15  # x y z, roll pitch yaw, their rates, and accelerations
 # Of robot_localization's own example, for what windows of motion do not determine.
 EXAMPLE_NOISE = (
     *(0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04),
     *(0.01, 0.01, 0.02, 0.01, 0.01, 0.015),
 )
-MEASURED = (0, 1, 5)  # x, y and yaw of the state
+MEASURED = (0, 1, 5)  # x, y and yaw, of x y z, roll pitch yaw, their rates and accelerations
 
 
 def ros_yaml(

@@ -82,11 +82,6 @@ class Identification:
     window_config: WindowConfig
 
     @property
-    def grounds(self) -> Mapping[str, Identified]:
-        """`terrains` under its old name, for one version."""
-        return self.terrains
-
-    @property
     def left_out(self) -> Counter[str]:
         """Windows of the runs that were left out, counted by reason, on all terrains together."""
         return next(iter(self.terrains.values())).fit.windows.left_out

@@ -91,11 +91,6 @@ def linearised_window_motion(
     return motion, derivative
 
 
-def window_motion_jacobian(model: Moving, values: FloatArray, windows: Windows) -> FloatArray:
-    """Derivative (K, 3, P) of `window_motion` by the parameters."""
-    return linearised_window_motion(model, values, windows)[1]
-
-
 class _Path(NamedTuple):
     """Steps laid end to end."""
 

@@ -23,11 +23,6 @@ KNOWN_SHARE, SHARE_OF_A_TERRAIN = 0.01, 0.05  # of images that may be taken for 
 NO_LIMIT = np.finfo(float).max
 
 
-def squares_of_things(size_px: int) -> list[ByteImage]:
-    """RGB squares (S, S, 3) of photographs of scikit-image that show no terrain."""
-    return squares_of(PHOTOGRAPHS, size_px)
-
-
 @cache
 def squares_of(photographs: tuple[str, ...], size_px: int) -> list[ByteImage]:
     """RGB squares (S, S, 3) of photographs of scikit-image, one photograph after the other.

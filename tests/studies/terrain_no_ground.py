@@ -32,7 +32,7 @@ from terrain.classification.other_things import (
     SQUARES,
     THINGS,
     OtherThings,
-    squares_of_things,
+    squares_of,
 )
 from terrain.classification.patches import LabelledPatches, cut_patches, find_photos, load_patches
 from terrain.classification.presets import PRESETS
@@ -179,7 +179,7 @@ def main() -> None:
         labels, groups = np.array(patches.labels), np.array(patches.groups)
         codes = np.unique(labels, return_inverse=True)[1]
         features = feature_matrix(patches.images, PRESETS["default"].features)
-        things = feature_matrix(squares_of_things(size), PRESETS["default"].features)
+        things = feature_matrix(squares_of(PHOTOGRAPHS, size), PRESETS["default"].features)
         empty, found = without_ground(root, size), Shares()
         for train, held_out in grouped_folds(codes, groups):
             images = [patches.images[i] for i in train]

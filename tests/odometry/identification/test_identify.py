@@ -118,7 +118,6 @@ def noisy_runs(gravel, ice, synthetic):
 def test_each_terrain_has_its_own_fit(gravel, ice, synthetic):
     found = identify([gravel, ice], "icr", solver_config=ONE_START)
     assert list(found.terrains) == ["gravel", "ice"]
-    assert found.grounds is found.terrains  # their old name
     assert found.terrains["gravel"].fit.values == pytest.approx(synthetic.icrs, abs=1e-9)
     assert found.terrains["ice"].fit.values == pytest.approx(ICE, abs=1e-9)
     assert set(found.terrains["ice"].fit.windows.run) == {"ice_run"}

@@ -13,7 +13,7 @@ from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.gaps import odometry_gaps
-from odometry.windows.motion import window_motion, window_motion_jacobian
+from odometry.windows.motion import linearised_window_motion, window_motion
 from odometry.windows.windows import windows_of
 
 VALUES = np.array([0.45, -0.36, 0.06, 0.97, 0.93])
@@ -98,6 +98,10 @@ def stretches_of(run):
     return stretches
 
 
+def derivative_of_motion(model, values, windows):
+    return linearised_window_motion(model, values, windows)[1]
+
+
 def windows_or_skip(runs, config):
     try:
         return windows_of(runs, config)
@@ -159,7 +163,7 @@ def test_where_keeps_what_the_windows_measure_and_predict(run, config, seed):
     assert len(kept) == chosen.sum()
     for name in ("first_pose", "last_pose", "measured", "travel_m", "start_s", "run", "terrain"):
         np.testing.assert_array_equal(getattr(kept, name), getattr(windows, name)[chosen])
-    for predict in (window_motion, window_motion_jacobian):
+    for predict in (window_motion, derivative_of_motion):
         np.testing.assert_allclose(
             predict(Icr(), VALUES, kept),
             predict(Icr(), VALUES, windows)[chosen],
@@ -189,7 +193,7 @@ def test_several_runs_are_their_windows_end_to_end(first, second, config):
             getattr(both, name), np.concatenate([getattr(one, name), getattr(two, name)])
         )
     assert set(both.run) == {"first", "second"}
-    for predict in (window_motion, window_motion_jacobian):
+    for predict in (window_motion, derivative_of_motion):
         apart = [predict(Icr(), VALUES, windows) for windows in (one, two)]
         np.testing.assert_allclose(
             predict(Icr(), VALUES, both), np.concatenate(apart), rtol=1e-9, atol=1e-10

@@ -15,7 +15,6 @@ from terrain.classification.other_things import (
     THINGS,
     OtherThings,
     squares_of,
-    squares_of_things,
 )
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.errors import ModelFileError
@@ -45,7 +44,7 @@ def learned():
 
 @pytest.mark.parametrize("size_px", [32, 128, 700])
 def test_squares_are_of_every_photograph_and_always_the_same(size_px):
-    squares = squares_of_things(size_px)
+    squares = squares_of(PHOTOGRAPHS, size_px)
     assert {square.shape for square in squares} == {(size_px, size_px, 3)}
     assert len(squares) == SQUARES * len(PHOTOGRAPHS)
     again = squares_of.__wrapped__(PHOTOGRAPHS, size_px)
