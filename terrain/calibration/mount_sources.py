@@ -10,6 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.geometry import se3
 from odometry.geometry.se3 import mount_of_optical
 from odometry.run import Run
+from odometry.trajectory import Trajectory
 from terrain.calibration.lens_sources import LensSource
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_from_motion import mount_from_motion
@@ -24,7 +25,6 @@ from terrain.camera.camera_values import finite_array
 from terrain.camera_files.lens_models import Lens
 from terrain.camera_files.transforms import ROBOT, mount_in, read_transforms
 from terrain.errors import CalibrationError, CameraError
-from terrain.main_job import run_odometry
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,20 +135,23 @@ def mount_of_points(lens: Lens, file: Path) -> MountSource:
 
 
 def mount_of_motion(
-    run: Run, lens: Lens, known: FloatArray | None = None, *, show_progress: bool = False
+    run: Run,
+    odometer: Trajectory,
+    lens: Lens,
+    known: FloatArray | None = None,
+    *,
+    show_progress: bool = False,
 ) -> MountSource:
-    """The mount from the run itself; x and y are those of the mount known, or zero.
+    """The mount from a run and its odometer; x and y are those of the mount known, or zero.
 
     Raises
     ------
-    OdometryError
-        If the run does not determine it, or cannot be replayed.
+    CalibrationError
+        If the run does not determine it.
     """
     if run.images is None:
         raise CalibrationError(f"{run.folder}: no images.csv: a mount cannot be determined from it")
-    result = run_odometry(run, vision=False)
-    odometer = result.replay.odometer()
-    tracker = tracker_of(result.run, lens, odometer, show_progress=show_progress)
+    tracker = tracker_of(run, lens, odometer, show_progress=show_progress)
     fit, tracks = mount_from_motion(tracker.track(), lens, known, tracker.track)
     return MountSource(_mounted(lens, fit.mount), f"the motion of {run.folder}", fit, tracks)
 

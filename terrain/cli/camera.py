@@ -182,6 +182,7 @@ def _placed(
 ) -> "MountSource | None":
     """The camera where the options say that it sits, else where run.toml or the file does."""
     from terrain.calibration import mount_sources as mounts
+    from terrain.main_job import run_odometry
 
     if sources["--transforms"] is not None:
         return mounts.mount_of_transforms(lens, sources["--transforms"], frame)
@@ -199,7 +200,9 @@ def _placed(
     if sources["--from-motion"] is None:
         return known
     place = known.camera.mount if known is not None else None
-    found = mounts.mount_of_motion(run, lens.lens, place, show_progress=True)
+    result = run_odometry(run, vision=False)
+    odometer = result.replay.odometer()
+    found = mounts.mount_of_motion(result.run, odometer, lens.lens, place, show_progress=True)
     return found if stated is not None else mounts.with_height(found)
 
 

@@ -31,6 +31,7 @@ from terrain.calibration.mount_sources import mount_of_motion
 from terrain.camera.camera import Camera
 from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
+from terrain.main_job import run_odometry
 from terrain.synthetic import SynthesisConfig, synthesise
 from tests.terrain.calibration.rendered import (
     board_photo,
@@ -128,8 +129,13 @@ def motion_rows(camera: dict[str, Any], seed: int, rng: np.random.Generator) -> 
             ("motion, x and y not given", run, None),
             ("motion, images late by 0.1 s", late(run), place),
         ):
+            result = run_odometry(used, vision=False)
+            odometer = result.replay.odometer()
             yield from report(
-                name, camera, seed, lambda u=used, k=known: mount_of_motion(u, lens, k).fit
+                name,
+                camera,
+                seed,
+                lambda u=result.run, o=odometer, k=known: mount_of_motion(u, o, lens, k).fit,
             )
 
 

@@ -8,12 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from odometry.run import Run
+from odometry.trajectory import Trajectory
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_from_motion import mount_from_motion
 from terrain.calibration.mount_sources import MountSource, mount_of_motion, with_height
 from terrain.calibration.tracks import Tracks
 from terrain.camera_files.lens_models import Lens
 from terrain.errors import CalibrationError
+from terrain.main_job import run_odometry
 from tests.terrain.calibration.rendered import OPTICAL, rotation
 
 LENS = Lens.of((640, 480), [[460.0, 0, 319.5], [0, 460.0, 239.5], [0, 0, 1]])
@@ -160,7 +162,9 @@ def test_rendered_images(across_run, world):
     run = Run.read(across_run)
     camera = world.camera
     lens = Lens.of(camera["image_size"], camera["matrix"], camera["distortion"])
-    found = mount_of_motion(run, lens, np.array(camera["mount"]) * [1, 1, 0, 0, 0, 0])
+    odometer = run_odometry(run, vision=False).replay.odometer()
+    place = np.array(camera["mount"]) * [1, 1, 0, 0, 0, 0]
+    found = mount_of_motion(run, odometer, lens, place)
     error = np.abs(found.fit.mount - camera["mount"])
     assert np.degrees(error[3:5]).max() < 0.5
     assert error[2] < 0.02
@@ -170,4 +174,4 @@ def test_rendered_images(across_run, world):
 def test_a_run_without_images(curvy_run, world):
     lens = Lens.of(world.camera["image_size"], world.camera["matrix"])
     with pytest.raises(CalibrationError, match="no images"):
-        mount_of_motion(Run.read(curvy_run), lens)
+        mount_of_motion(Run.read(curvy_run), Trajectory(np.arange(2.0), np.zeros((2, 3))), lens)
