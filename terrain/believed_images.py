@@ -1,14 +1,14 @@
 """What of its images a run may take its terrain from, by what the check of the recording found."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from odometry.checks.findings.finding import CheckReport
+from odometry.checks.findings.finding import CheckReport, Level
 from odometry.run import Run
 from terrain.checks.fixed_parts import ROBOT_IN_IMAGES
 from terrain.errors import PatchError
-from terrain.run_options import RunOptions
 
 # Findings by which images show other terrain than that ahead of the robot at their stamps: each
 # label would be wrong, and some of them sure
@@ -19,34 +19,42 @@ ELSEWHERE = frozenset(
 OF_STRETCHES = frozenset({"images_frozen", "images_blank", "images_lost_details"})
 
 
-def believed(run: Run, options: RunOptions, report: CheckReport) -> tuple[Run, RunOptions, str]:
-    """A run and its options, with no more of its images than show the terrain ahead.
-
-    Without vision where images show other terrain, and beside the parts of them that show the robot
-    itself. A published system (a preset) is what it is, and keeps its camera.
+def believed(run: Run, report: CheckReport) -> tuple[Run, str]:
+    """A run with no more of its images than show the terrain ahead; or why they show another.
 
     Parameters
     ----------
     run : Run
-    options : RunOptions
     report : CheckReport
         Of the run, its images checked as well.
 
     Returns
     -------
     Run
-    RunOptions
+        Its [camera] with outlines of what shows the robot.
     str
-        Why vision is left out, or "".
+        Why images show other terrain than that ahead, or "".
     """
-    if options.preset is not None or not options.reads_images:
-        return run, options, ""
-    found = [finding for finding in report.findings if finding.name in ELSEWHERE]
-    if not found:
-        return _beside_robot(run, report), options, ""
-    source = None if options.source == "camera" else options.source
-    said = f"vision is left out, as with --no-vision: {found[0].cause}"
-    return run, replace(options, vision=False, source=source), said
+    cause = shows_elsewhere(report)
+    return (run, cause) if cause else (_beside_robot(run, report), "")
+
+
+def shows_elsewhere(report: CheckReport) -> str:
+    """Why images show other terrain than that ahead of the robot, or ""."""
+    return next((found.cause for found in report.findings if found.name in ELSEWHERE), "")
+
+
+def as_checked(run: Run, report: CheckReport, source: str, *, has_feel: bool) -> tuple[Run, str]:
+    """A run and its source of terrain, by name, by what the check found; it is warned of."""
+    for finding in report.at(Level.WARNING):
+        warnings.warn(f"{run.folder}: {finding.line.partition(': ')[2]}", stacklevel=3)
+    if source != "camera":
+        return run, source
+    run, cause = believed(run, report)
+    if not cause:
+        return run, source
+    warnings.warn(f"{run.folder}: vision is left out, as with vision=False: {cause}", stacklevel=3)
+    return run, "feel" if has_feel else "none"
 
 
 def run_to_label(run: Run, report: CheckReport) -> Run:
@@ -57,11 +65,8 @@ def run_to_label(run: Run, report: CheckReport) -> Run:
     PatchError
         If all images show other terrain, or none is left.
     """
-    for finding in report.findings:
-        if finding.name in ELSEWHERE:
-            raise PatchError(
-                f"{run.folder}: no patch can be labelled by these images: {finding.cause}"
-            )
+    if cause := shows_elsewhere(report):
+        raise PatchError(f"{run.folder}: no patch can be labelled by these images: {cause}")
     if run.images is None:
         return run
     times_s = run.images.stamps_s - run.odometry.stamps_s[0]

@@ -22,8 +22,11 @@ from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.pose_delay import without_pose_delay
 from odometry.pose_noise import with_pose_noise
 from odometry.run import UNKNOWN, Run
+from odometry.run_span import Span
 from odometry.terrain_sources import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
+from terrain.believed_images import as_checked
+from terrain.checks.recording import checked_run
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.result.contradictions import contradictions, labels_beneath
@@ -45,6 +48,7 @@ from terrain.sources.sources import (
 from terrain.sources.watcher import TerrainWatcher
 
 if TYPE_CHECKING:
+    from odometry.checks.findings.finding import CheckReport
     from terrain.classification.trained import Classifier
 
 __all__ = ["RunResult", "run_odometry"]
@@ -69,6 +73,9 @@ def run_odometry(
     Parameters
     ----------
     run : Run or path
+        A folder is read and checked, as the command `run` does: what the check warns of is a
+        `UserWarning`, images that show other terrain than that ahead are left out, and so are
+        parts of images that show the robot. A `Run` is taken as it is.
     model : TerrainClassifier or path, optional
         Without a model images are not used.
     parameters : ParameterSet or path, optional
@@ -97,8 +104,8 @@ def run_odometry(
     Raises
     ------
     OdometryError
-        If an input does not follow its format, a model is given for a run without images, or
-        a setting contradicts the preset.
+        If an input does not follow its format, a folder cannot be used as it is, a model is
+        given for a run without images, or a setting contradicts the preset.
 
     Examples
     --------
@@ -110,7 +117,14 @@ def run_odometry(
     >>> f"{off_m['differential_drive']:.0f} m, {off_m['odometer']:.0f} m"
     '11 m, 0 m'
     """
-    run = run if isinstance(run, Run) else Run.read(run)
+    name, has_feel = OWN_SOURCE, feel is not None
+    if isinstance(source, str | None):
+        name = source_name(source, vision=vision, has_model=model is not None, has_feel=has_feel)
+    report: CheckReport | None = None
+    if not isinstance(run, Run):
+        of_images = name == "camera" and preset is None  # a published system is what it is
+        run, report = checked_run(Path(run), Span(), images=of_images)
+        run, name = as_checked(run, report, name, has_feel=has_feel)
     config = config or (run_preset(preset).config if preset else Config())
     if not isinstance(parameters, ParameterSet):
         parameters = read_parameters(parameters) if parameters else ParameterSet()
@@ -118,7 +132,7 @@ def run_odometry(
     corrections = corrections_of(run, parameters)
     run, config, noticed = _prepared(run, parameters, config)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
-    name, trained = _trained(model, source, vision=vision, has_feel=feel is not None)
+    trained = _trained(model) if name == "camera" else None
     reader: Classifier | None = trained
     if preset is not None:
         config, reader = with_preset(
@@ -169,8 +183,9 @@ def run_odometry(
         learned,
         odometer_uncertainty(run, result, None if used else reference),
         second,
-        BOTH if name == "camera" and feel is not None else name,
+        BOTH if name == "camera" and has_feel else name,
         differing,
+        report,
     )
 
 
@@ -226,17 +241,5 @@ def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
     )
 
 
-def _trained(
-    model: TerrainClassifier | str | Path | None,
-    source: str | TerrainSource | None,
-    *,
-    vision: bool,
-    has_feel: bool,
-) -> tuple[str, TerrainClassifier | None]:
-    """Which source is meant, and the classifier where that reads images."""
-    if not isinstance(source, str | None):
-        return OWN_SOURCE, None
-    name = source_name(source, vision=vision, has_model=model is not None, has_feel=has_feel)
-    if name != "camera":
-        return name, None
-    return name, TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+def _trained(model: TerrainClassifier | str | Path | None) -> TerrainClassifier | None:
+    return TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model

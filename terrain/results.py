@@ -73,7 +73,7 @@ def write_results(
     out : path
         Made if it is missing; files of an earlier run are replaced one by one.
     about : Mapping, optional
-        What made the result; its keys are added to result.json.
+        What made the result; its keys are added to result.json, after the check of the result.
 
     Returns
     -------
@@ -128,7 +128,8 @@ def write_results(
         names.append("reference.tum")
     for name in {"learned.toml", *tables, "reference.tum"} - set(names):
         (out / name).unlink(missing_ok=True)  # of an earlier run
-    text = json.dumps(result_table(result) | dict(about or {}), indent=2, allow_nan=False)
+    about = {"check": [report.to_table() for report in result.reports]} | dict(about or {})
+    text = json.dumps(result_table(result) | about, indent=2, allow_nan=False)
     with atomic_write(out / "result.json") as part:
         part.write_text(text + "\n", encoding="utf-8")
     return [out / name for name in (*names, "result.json")]

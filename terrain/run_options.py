@@ -3,8 +3,10 @@
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from odometry.checks.findings.finding import CheckReport
 from odometry.run import Run
 from odometry.run_span import Span
+from terrain.believed_images import believed
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.result.run_result import RunResult
@@ -70,6 +72,28 @@ class RunOptions:
         """The same for a process that works in another folder."""
         files = {name: getattr(self, name) for name in FILES}
         return replace(self, **{name: file and file.absolute() for name, file in files.items()})
+
+    def believed(self, run: Run, report: CheckReport) -> "tuple[Run, RunOptions, str]":
+        """A run and options, with no more of its images than show the terrain ahead.
+
+        Without vision where images show other terrain, and beside the parts of them that show the
+        robot itself. A published system (a preset) is what it is, and keeps its camera.
+
+        Returns
+        -------
+        Run
+        RunOptions
+        str
+            Why vision is left out, or "".
+        """
+        if self.preset is not None or not self.reads_images:
+            return run, self, ""
+        run, cause = believed(run, report)
+        if not cause:
+            return run, self, ""
+        source = None if self.source == "camera" else self.source
+        said = f"vision is left out, as with --no-vision: {cause}"
+        return run, replace(self, vision=False, source=source), said
 
     def replay(self, run: Run, *, show_progress: bool = False) -> RunResult:
         """Replay a run with these options.

@@ -11,7 +11,6 @@ from odometry.outputs.manifest import FINISHED, Manifest, check_finished, read_m
 from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Asked, Made
 from odometry.outputs.written_tables import changes_of
-from terrain.believed_images import believed
 from terrain.checks.recording import checked_run
 from terrain.one_thread import one_thread
 from terrain.results import write_run
@@ -104,7 +103,7 @@ def _replay(job: Job, made: Made) -> str:
     """Replay and write; why the images were not believed, or ""."""
     output = claim_folder(job.out, made)
     run, report = checked_run(job.folder, job.options.span, images=job.options.reads_images)
-    run, options, left_out = believed(run, job.options, report)
+    run, options, left_out = job.options.believed(run, report)
     write_run(options.replay(run), output, [report])
     return left_out
 

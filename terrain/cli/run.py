@@ -142,7 +142,6 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
     Example:
       terrain-odometry run my_run --model terrain.model --parameters set.toml --out results
     """
-    from terrain.believed_images import believed
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.results import (
@@ -159,7 +158,7 @@ def run(run_folder: Path, *, out: Path, options: "RunOptions") -> None:
 
     output = claim_folder(out, reads_images=options.reads_images)
     recording = read_run(run_folder, options.span, images=options.reads_images)
-    recording, options, left_out = believed(recording, options, checks_made()[-1])
+    recording, options, left_out = options.believed(recording, checks_made()[-1])
     if left_out:
         click.echo(f"Warning: {run_folder}: {left_out}", err=True)
     result = options.replay(recording, show_progress=True)

@@ -63,8 +63,9 @@ def write_report(
         Folder; made if it is missing.
     compared_with : Mapping of name to RunResult, optional
         Other results of the same run, such as {"without vision": ...}.
-    reports : iterable of CheckReport
-        Of the run: what the check warns of stands first on the page, then `run_notes`.
+    reports : iterable of CheckReport, optional
+        Of the run, by default that of the result: what the check warns of stands first on the
+        page, then `run_notes`.
 
     Returns
     -------
@@ -91,7 +92,7 @@ def write_report(
     lines = ReportLines(result, compared_with or {})
     tints = _tints(result)
     sections = [
-        before_use(reports, run_notes(result)),
+        before_use(reports or result.reports, run_notes(result)),
         Section("Errors", _errors(lines, folder)),
         Section("Uncertainty of the odometer", _uncertainty(result)),
         Section("What the filter noticed", _some(event_grid(result))),

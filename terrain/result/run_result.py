@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
 
+from odometry.checks.findings.finding import CheckReport
 from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
@@ -69,6 +70,8 @@ class RunResult:
         Source of the terrain: "camera", "labels", "modes", "feel", "none", or the user's own.
     contradictions : tuple of Contradiction
         Where camera, feel and motion differ for long, or no source knows the terrain.
+    report : CheckReport or None
+        What the check found in a folder that `run_odometry` read; None of a `Run`.
 
     Examples
     --------
@@ -93,6 +96,12 @@ class RunResult:
     second: SecondReplay | None = None
     source: str = "none"
     contradictions: tuple[Contradiction, ...] = ()
+    report: CheckReport | None = None
+
+    @property
+    def reports(self) -> tuple[CheckReport, ...]:
+        """`report`, or none."""
+        return () if self.report is None else (self.report,)
 
     @cached_property
     def evaluated(self) -> dict[str, EvaluatedTrajectory]:

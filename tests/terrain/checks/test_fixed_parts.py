@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import CheckReport
-from terrain.believed_images import believed, run_to_label
+from terrain.believed_images import run_to_label
 from terrain.camera.camera import Camera
 from terrain.camera.robot_outlines import covered
 from terrain.checks.fixed_parts import FEWEST, fixed_parts, robot_in_images
@@ -205,8 +205,8 @@ def test_run_and_label_leave_the_parts_out_and_a_preset_does_not(drive, camera):
     labelled = run_to_label(drive, report)
     assert len(labelled.settings["camera"]["robot_outlines"]) == 1
     options = RunOptions(Config(), model=Path("a.model"))
-    ran, _, _ = believed(drive, options, report)
+    ran, _, _ = options.believed(drive, report)
     assert ran.settings == labelled.settings
-    assert believed(drive, replace(options, preset="chen2023"), report)[0] is drive
-    assert believed(drive, replace(options, vision=False), report)[0] is drive
-    assert believed(drive, options, CheckReport(drive.folder, ()))[0] is drive
+    assert replace(options, preset="chen2023").believed(drive, report)[0] is drive
+    assert replace(options, vision=False).believed(drive, report)[0] is drive
+    assert options.believed(drive, CheckReport(drive.folder, ()))[0] is drive

@@ -1,4 +1,4 @@
-"""Images that show other terrain than that ahead are not believed, by `run` and by `batch`."""
+"""Images that show other terrain than that ahead are not believed: `run`, `batch`, in Python."""
 
 import json
 from dataclasses import replace
@@ -9,11 +9,14 @@ from click.testing import CliRunner
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.run import Run
-from terrain.believed_images import ELSEWHERE, OF_STRETCHES, believed, run_to_label
+from terrain.believed_images import ELSEWHERE, OF_STRETCHES, run_to_label
+from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.batch import batch
 from terrain.cli.run import run
 from terrain.config import Config
 from terrain.errors import PatchError
+from terrain.main_job import run_odometry
+from terrain.results import write_results
 from terrain.run_options import RunOptions
 
 RUN = object()  # which is given back
@@ -34,7 +37,7 @@ def of_another_drive(monkeypatch):
 @pytest.mark.parametrize("source", [None, "camera"])
 def test_vision_is_left_out(name, source):
     options = RunOptions(Config(), model=Path("a.model"), source=source)
-    run, changed, said = believed(RUN, options, CheckReport(Path("a"), (found(name),)))
+    run, changed, said = options.believed(RUN, CheckReport(Path("a"), (found(name),)))
     assert run is RUN
     assert changed.terrain_source == "none"
     assert said.endswith("Images are of another drive")
@@ -44,20 +47,20 @@ def test_vision_is_left_out(name, source):
 def test_what_moves_labels_by_a_little_is_no_reason(name):
     options = RunOptions(Config(), model=Path("a.model"))
     report = CheckReport(Path("a"), (found(name),))
-    assert believed(RUN, options, report) == (RUN, options, "")
+    assert options.believed(RUN, report) == (RUN, options, "")
 
 
 def test_a_published_system_keeps_its_camera():
     options = RunOptions(Config(), model=Path("a.model"), preset="chen2023")
     report = CheckReport(Path("a"), (found("images_reversed"),))
-    assert believed(RUN, options, report) == (RUN, options, "")
+    assert options.believed(RUN, report) == (RUN, options, "")
 
 
 @pytest.mark.parametrize("source", ["labels", "feel"])
 def test_other_sources_stay(source):
     options = RunOptions(Config(), source=source, feel=Path("feel"))
     report = CheckReport(Path("a"), (found("images_unrelated"),))
-    assert believed(RUN, options, report) == (RUN, options, "")
+    assert options.believed(RUN, report) == (RUN, options, "")
 
 
 @pytest.mark.parametrize("name", sorted(ELSEWHERE))
@@ -99,3 +102,32 @@ def test_batch_leaves_them_out_as_well(across_run, model_file, tmp_path):
     assert answer.exit_code == 0, answer.output
     assert not json.loads((out / "across" / "result.json").read_text())["vision"]
     assert "across: vision is left out" in answer.stderr
+
+
+@pytest.mark.usefixtures("of_another_drive")
+def test_in_python_a_folder_is_checked_and_a_run_is_taken_as_it_is(
+    across_run, classifier, tmp_path
+):
+    with pytest.warns(UserWarning, match="Images are of another drive") as warned:
+        result = run_odometry(across_run, model=classifier, terrain="gravel")
+    assert result.watcher is None
+    messages = [str(each.message).removeprefix(f"{across_run}: ") for each in warned]
+    assert messages == [
+        "seen. Images are of another drive. look.",
+        "vision is left out, as with vision=False: Images are of another drive",
+    ]
+    assert {each.filename for each in warned} == {__file__}
+    assert result.report.findings[0].name == "images_unrelated"
+    write_results(result, tmp_path)
+    assert "images_unrelated" in (tmp_path / "result.json").read_text()
+    taken = run_odometry(Run.read(across_run), model=classifier, terrain="gravel")
+    assert taken.watcher is not None
+    assert taken.report is None
+
+
+@pytest.mark.usefixtures("of_another_drive")
+def test_in_python_a_published_system_keeps_its_camera(across_run, training_patches, world):
+    paper = TerrainClassifier("chen2023", metres_per_pixel=world.metres_per_pixel)
+    paper.fit(*training_patches)
+    result = run_odometry(across_run, model=paper, terrain="gravel", preset="chen2023")
+    assert result.watcher is not None

@@ -51,7 +51,7 @@ def winding(tmp_path_factory):
     lines = [",".join(f"{cell:.9g}" for cell in row) for row in poses]
     (run / "pose.csv").write_text("\n".join(["t,x,y,yaw", *lines]))
     made = {"made": {"inputs": [{"role": "RUN", "path": str(run)}]}}
-    write_results(run_odometry(run, terrain="sand"), run.parent / "results", made)
+    write_results(run_odometry(Run.read(run), terrain="sand"), run.parent / "results", made)
     return run.parent
 
 

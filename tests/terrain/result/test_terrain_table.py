@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from odometry.run import Run
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.main_job import run_odometry
@@ -72,7 +73,7 @@ def test_the_threshold_of_the_readme(across_result, classifier, tmp_path, monkey
 def test_an_image_without_a_label_is_an_empty_cell_with_a_reason(tmp_path, world, classifier):
     run = world.drive_straight(tmp_path / "run", world.across, 0.5)
     (run / "images" / "001.png").write_bytes(b"")
-    write_results(run_odometry(run, model=classifier), tmp_path / "out")
+    write_results(run_odometry(Run.read(run), model=classifier), tmp_path / "out")
     _, table = columns(tmp_path / "out" / "terrain.csv")
     assert table["label"][1] == table["confidence"][1] == ""
     assert table["reason"][1] == "the image cannot be read"
