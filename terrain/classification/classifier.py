@@ -80,6 +80,9 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         and of files of version 0.9.
     training_look_ : TrainingLook or None
         What `likeness` compares images with; None of features and of files of version 0.9.
+    noticed_share_ : float or None
+        Of altered training photographs that `likeness` calls unlike; None without such looks, where
+        no terrain has five photographs, and of files before version 0.34.
     shown_ground_, other_things_ : ShownGround, OtherThings or None
         Limits by terrain; None of features, with ``chen2023`` and of files before 0.14, 0.16.
     confidence_ : AnswerConfidence or None

@@ -23,6 +23,7 @@ from terrain.classification.likeness import TrainingLook
 from terrain.classification.look import spread_rows
 from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.no_ground import ShownGround
+from terrain.classification.noticed_alterations import noticed_share
 from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import PHOTOGRAPHS, OtherThings, squares_of
 from terrain.classification.presets import PRESETS
@@ -160,9 +161,12 @@ class LearningClassifier(TrainedClassifier):
     ) -> None:
         """Keep how the training patches look, what they show, and some of their features."""
         self.training_look_ = self.old_samples_ = self.shown_ground_ = None
+        self.noticed_share_ = None
         if patches is None:
             return
-        self.training_look_ = TrainingLook.of(patches, samples.codes, samples.groups)
+        photographs = samples.codes, samples.groups
+        self.training_look_ = TrainingLook.of(patches, *photographs)
+        self.noticed_share_ = noticed_share(self.training_look_, patches, *photographs)
         if not PRESETS[self.preset].as_published:
             self.shown_ground_ = ShownGround.of(list(patches), samples.codes)
             rows = spread_rows(samples.groups)

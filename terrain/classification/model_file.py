@@ -46,6 +46,7 @@ class ModelFile:
     one_patch_: bool
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
+    noticed_share_: float | None
     shown_ground_: ShownGround | None
     other_things_: OtherThings | None
     confidence_: AnswerConfidence | None

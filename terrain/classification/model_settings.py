@@ -81,8 +81,8 @@ class ModelSettings:
     """The settings of a trained classifier: attributes of `TerrainClassifier`, keys of its file.
 
     What has a default is missing from files of older versions: `trained_on` from those of 0.4,
-    `rejection_distances` and `temperature` of 0.9, `one_patch` of 0.11 and
-    `image_rejection_distances` of 0.12.
+    `rejection_distances` and `temperature` of 0.9, `one_patch` of 0.11,
+    `image_rejection_distances` of 0.12, and `noticed_share` of 0.33.
     """
 
     preset: str
@@ -99,6 +99,7 @@ class ModelSettings:
     temperature: float | None = None
     one_patch: bool = False
     image_rejection_distances: tuple[float, ...] | None = None
+    noticed_share: float | None = None
 
     @classmethod
     def taken_from(cls, model: object, features: FeatureSettings | NetworkSettings) -> Self:
@@ -174,6 +175,7 @@ RANGES = {
     "rejection_distances": (0.0, 1e12),
     "temperature": TEMPERATURES,
     "image_rejection_distances": (0.0, 1e12),
+    "noticed_share": (0.0, 1.0),
 }
 # What was learned has an underscore at the end, as scikit-learn has it.
 GIVEN = {"preset", "metres_per_pixel", "rejected_share", "patch_size_px"}

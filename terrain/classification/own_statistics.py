@@ -131,6 +131,7 @@ class OwnStatisticsClassifier:
         self.rejection_distance_ = classifier.rejection_distance_
         self.rejection_distances_ = classifier.rejection_distances_
         self.training_look_ = classifier.training_look_
+        self.noticed_share_ = classifier.noticed_share_
 
     def see(self, image: ByteImage) -> FloatArray:
         """Take in an image; the features (patches, F) of its patches.

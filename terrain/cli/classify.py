@@ -58,7 +58,7 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     else:
         likeness = classifier.likeness(readable(images))
         rows = [_row(classifier, path, likeness) for path in images]
-        print_likeness(likeness)
+        print_likeness(likeness, classifier.noticed_share_)
         print_no_ground([row.get("reason", "") for row in rows])
         click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
         all_used = not any("error" in row for row in rows)

@@ -155,10 +155,12 @@ if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
 
 
-def print_likeness(likeness: "Likeness | None") -> None:
-    """Say so where images are unlike, as a whole; nothing else."""
-    if likeness is not None and likeness.note is not None:
-        click.echo(f"Note: {likeness.note}", err=True)
+def print_likeness(likeness: "Likeness | None", noticed_share: float | None = None) -> None:
+    """Say so where images are unlike, as a whole, or where that would not be noticed."""
+    from terrain.classification.noticed_alterations import unnoticed
+
+    if likeness is not None and (note := likeness.note or unnoticed(noticed_share)) is not None:
+        click.echo(f"Note: {note}", err=True)
 
 
 def print_no_ground(reasons: Sequence[str]) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from terrain.classification.manifest import read_manifest
+from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.photo_faults import look_alikes
 from terrain.classification.training import LARGEST_PATCH_PX, Training
@@ -33,6 +34,8 @@ def notes(
     yield from _of_groups(patches)
     if colour and not classifier.colour_:
         yield "Colour is left out: patches are grey, or most of a class are, or the preset is."
+    if (what := unnoticed(classifier.noticed_share_)) is not None:
+        yield f"Note: {what}"
     if (manifest := read_manifest(folder)) is not None and manifest.runs:
         yield (
             f"Note: the patches are of {', '.join(manifest.runs)}: what is held out are other "

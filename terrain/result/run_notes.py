@@ -8,6 +8,7 @@ import numpy as np
 from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
 from terrain.classification.no_ground import no_ground_note
+from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
@@ -70,6 +71,9 @@ def _images(watcher: TerrainWatcher) -> list[str]:
         learned = getattr(watcher.classifier, "confidence_", None) is not None
         what = f"Names that are not surely enough right are unknown ({doubted} images)"
         found.append(f"{likeness.note}. {what if learned or doubted else 'Here they count less'}")
+    elif likeness is not None and likeness.images:
+        share = getattr(watcher.classifier, "noticed_share_", None)
+        found += filter(None, [unnoticed(share)])
     empty = no_ground_note([image_label.reason for image_label in watcher.image_labels])
     if empty is not None:
         found.append(empty)

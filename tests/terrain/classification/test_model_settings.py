@@ -25,12 +25,14 @@ SETTINGS = ModelSettings(
     temperature=1.5,
     one_patch=True,
     image_rejection_distances=(4.0, 2.5, 2.0, 1.0, 0.5),
+    noticed_share=0.75,
 )
 NEW_IN = {
     "0.5": ["trained_on"],
     "0.10": ["rejection_distances", "temperature"],
     "0.12": ["one_patch"],
     "0.13": ["image_rejection_distances"],
+    "0.34": ["noticed_share"],
 }
 
 
@@ -47,6 +49,7 @@ def test_what_is_written_is_read():
         trained_on=None,
         temperature=None,
         image_rejection_distances=None,
+        noticed_share=None,
     )
     assert ModelSettings.from_table(as_read(fewest)) == fewest
     assert ModelSettings.from_table(as_read(replace(SETTINGS, metres_per_pixel=1)))
@@ -98,6 +101,8 @@ def test_what_every_version_has_must_be_there(missing):
         ("temperature", 0.05),
         ("image_rejection_distances", []),
         ("image_rejection_distances", [1.0] * 4 + [1e13]),
+        ("noticed_share", 1.5),
+        ("noticed_share", "0.5"),
     ],
 )
 def test_another_kind_or_range_is_refused(name, value):
@@ -139,6 +144,7 @@ def test_keys_of_files_stay(tmp_path, rng):
         "image_rejection_distances",
         "metres_per_pixel",
         "n_neighbors",
+        "noticed_share",
         "one_patch",
         "patch_size_px",
         "preset",

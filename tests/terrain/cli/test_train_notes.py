@@ -9,9 +9,9 @@ from terrain.classification.patches import find_photos, load_patches
 from terrain.cli.train_notes import notes
 
 
-def said(folder, **options):
+def said(folder, noticed_share=None, **options):
     training = SimpleNamespace(
-        classifier=SimpleNamespace(patch_size_px=64, colour_=False),
+        classifier=SimpleNamespace(patch_size_px=64, colour_=False, noticed_share_=noticed_share),
         patches=load_patches(find_photos(folder), 64),
     )
     return list(notes(training, folder, colour=False, **options))
@@ -43,6 +43,8 @@ def test_photographs_that_make_patches_small_are_named(tmp_path, rng):
     assert "patches have 64 px in place of 128, which do not fit into 1 of 4 photographs" in note
     assert f"{tmp_path / 'sand/d.png'} (its shorter side: 70 px)" in note
     assert not said(tmp_path)  # the size was given
+    (note,) = said(tmp_path, noticed_share=0.5)
+    assert note.startswith("Note: images of another camera may pass as those of training")
     for name in "ab":
         (tmp_path / f"sand/{name}.png").unlink()
     assert not said(tmp_path, chooses_size=True)  # half of them are small: so are the photographs

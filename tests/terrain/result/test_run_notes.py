@@ -62,6 +62,18 @@ def test_images_that_are_unlike_the_training_photographs_come_before_their_label
     assert not any("unlike" in one for one in run_notes(of))
 
 
+def test_where_another_camera_would_not_be_noticed_it_is_said_of_images_like_training():
+    of = starting(["grass"])
+    of.watcher.classifier.noticed_share_ = 0.4
+    of.watcher.seen.likeness = Likeness(40, 0.6, 0.5, ())
+    (note,) = [one for one in run_notes(of) if "another camera may pass" in one]
+    assert "40 % of them are noticed" in note
+    of.watcher.seen.likeness = Likeness(40, 0.93, 0.9, ("darker",))
+    assert not any("may pass" in one for one in run_notes(of))
+    of.watcher.seen.likeness = Likeness(0, float("nan"), float("nan"), ())
+    assert not any("may pass" in one for one in run_notes(of))
+
+
 def test_images_that_show_no_ground_are_counted():
     of = starting(["grass", "unknown", "unknown"])
     for image_label in of.watcher.image_labels[1:]:
