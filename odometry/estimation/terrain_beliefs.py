@@ -18,6 +18,7 @@ from odometry.run_terrains import Footing
 OF_TERRAIN_BLOCK = np.ix_(OF_TERRAIN, OF_TERRAIN)
 
 ICR_FORM_MODELS = tuple(name for name, model in MODELS.items() if model.has_constant_icrs)
+SIDES = np.array([1, -1, 0, 1, -1])  # of y_left, y_right, x_icr, alpha_left, alpha_right
 BROAD_SIGMA_WIDTHS = 0.5  # standard deviation of the broad prior, in track widths
 BROAD_SIGMA_ALPHA = 0.2  # of the slip of both treads together
 BROAD_SIGMA_SIDES = 0.05  # of the difference between their slip factors
@@ -208,7 +209,8 @@ def _covariance(table: TerrainParameters, form: IcrForm, unstated: FloatArray) -
 
     An ICR is stated where the table states every parameter that it follows from and that is not
     known of the robot. ICRs that follow from one parameter are taken as independent all the same:
-    that they move together is what the model supposes, not what was measured.
+    that they move together is what the model supposes, not what was measured. So is then what
+    belongs to the other tread: an ICR moves with the slip factor of its own tread alone.
     """
     model = model_named(table.model)
     names = [parameter.name for parameter in model.parameters]
@@ -219,7 +221,9 @@ def _covariance(table: TerrainParameters, form: IcrForm, unstated: FloatArray) -
     order = tuple(name for name in names if name in table.covariance_order)
     by_stated = form.by_parameters[:, stated]
     shared = follows.astype(int) @ follows.T > 0
-    apart = np.eye(5, dtype=np.bool_) | ~shared
+    alone = shared.sum(axis=1) == 1
+    of_one_side = SIDES[:, None] == SIDES
+    apart = np.eye(5, dtype=np.bool_) | ~shared & (of_one_side | alone & alone[:, None])
     both = is_stated & is_stated[:, None]
     mapped = by_stated @ table.covariance_of(order) @ by_stated.T
     return np.where(both, np.where(apart, mapped, 0.0), np.diag(unstated**2))

@@ -179,3 +179,30 @@ def test_a_terrain_that_keeps_its_share_opens_nothing(rng):
     mean, covariance = crossed(belief, known, {"mud": 0.4}, {"mud": 0.4}, {})
     np.testing.assert_array_equal(mean, belief[0])
     np.testing.assert_array_equal(covariance, belief[1])
+
+
+SYMMETRIC = {"alpha": 1.0, "b_hat": 0.9}
+SETTING = {"k": 0.9, "m": 0.6, "track_width": 0.4}
+
+
+@pytest.mark.parametrize("correlation", [-0.99, -0.6, 0.6, 0.99])
+@pytest.mark.parametrize(
+    ("model", "values", "order"),
+    [
+        ("icr_symmetric", SYMMETRIC, ("alpha", "b_hat")),
+        ("traction_mode", SETTING, ("k", "m")),
+        ("icr", {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}, ("y_left", "alpha_left")),
+    ],
+)
+def test_the_prior_of_correlated_parameters_is_a_covariance(model, values, order, correlation):
+    """Of GNSS positions without yaw slip and width are known as a ratio, far better than each."""
+    matrix = 0.06**2 * np.array([[1.0, correlation], [correlation, 1.0]])
+    belief = prior_of(TerrainParameters(model, values, order, matrix))
+    assert np.linalg.eigvalsh(belief.covariance).min() > -1e-15
+
+
+def test_a_width_keeps_its_correlation_with_the_slip_factor_of_the_same_tread():
+    matrix = np.array([[36e-4, 35e-4], [35e-4, 36e-4]])
+    belief = prior_of(TerrainParameters("icr_symmetric", SYMMETRIC, ("alpha", "b_hat"), matrix))
+    expected = np.array([[35e-4, 0.0], [0.0, -35e-4], [0.0, 0.0]]) / 2
+    np.testing.assert_allclose(belief.covariance[:3, 3:], expected)
