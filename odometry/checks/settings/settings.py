@@ -8,6 +8,7 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.findings.undo import Mend, times
 from odometry.checks.stamps.stamps import tables_of
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
@@ -146,6 +147,7 @@ def _gravity(evidence: Evidence) -> Iterator[Finding]:
             seen,
             "The IMU is mounted upside down (z down): gyro_z has the wrong sign, too",
             "State its attitude in [sensors] imu, or negate y and z",
+            times("imu", -1.0, *(name for name in imu.columns if name[-2:] in {"_y", "_z"})),
         )
     elif abs(z) < 0.7 * size and not stated:
         axis = "x" if abs(x) > abs(y) else "y"
@@ -164,8 +166,8 @@ def _turns_as_treads(evidence: Evidence) -> bool:
     return of_imu and gyroscope_sense(evidence) is Sense.AGREES
 
 
-def _imu(name: str, seen: str, cause: str, remedy: str) -> Finding:
-    return Finding(name, Level.WARNING, seen, cause, remedy)
+def _imu(name: str, seen: str, cause: str, remedy: str, mend: Mend | None = None) -> Finding:
+    return Finding(name, Level.WARNING, seen, cause, remedy, mend=mend)
 
 
 def _terrain_names(evidence: Evidence) -> Iterator[Finding]:
