@@ -11,6 +11,11 @@ import click
 from terrain.cli.options import trajectory_options
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+PLACE = (
+    "pose.csv: taken as the poses of the robot's centre. If they are those of a camera, lidar or "
+    "marker, write its place, [sensors] pose = [x, y, z], to run.toml: a fit cannot tell it from "
+    "x_icr"
+)
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,13 @@ def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
         If a file cannot be read, or has no stamp in common with the odometry.
     """
     from odometry.io.csv_table import write_csv_table
-    from odometry.io.run_folder import doubt_of_axes, pose_columns, poses_within, read_tables
+    from odometry.io.run_folder import (
+        doubt_of_axes,
+        pose_columns,
+        poses_within,
+        read_settings,
+        read_tables,
+    )
     from odometry.io.trajectory_files import read_trajectory
 
     odometry = read_tables(folder)["odometry"]
@@ -93,6 +104,8 @@ def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
             f"  {name}.csv: {len(trajectory)} rows from {file}, {counts[name]} of them within the "
             "odometry"
         )
+        if name == "pose" and "pose" not in read_settings(folder).get("sensors", {}):
+            lines.append(f"  {PLACE}")
         doubt = doubt_of_axes(trajectory)
         if doubt:
             click.echo(f"Warning: {file}: {doubt}", err=True)
