@@ -78,6 +78,12 @@ MATRIX = ("cameramatrix", "k", "intrinsicmatrix", "mtx", "matrix")
 DISTORTION = ("distortioncoefficients", "distcoeffs", "distortion", "dist", "d")
 WIDTH, HEIGHT, SIZE = ("imagewidth", "width"), ("imageheight", "height"), ("imagesize",)
 FISHEYE_FLAG = ("fisheyemodel",)
+FISHEYE_COUNT = 4  # of coefficients; cv2.calibrateCamera writes five or more
+WHICH_FOUR = (
+    "four distortion coefficients, and no distortion_model: cv2.fisheye.calibrate gives four (k1 "
+    "to k4), and an ordinary lens may have four (k1, k2, p1, p2). Add the line distortion_model: "
+    "equidistant (fisheye) or distortion_model: plumb_bob to the file"
+)
 
 
 def read_calibration(
@@ -124,6 +130,8 @@ def _plain(values: Mapping[str, Any], image_size: tuple[int, int] | None) -> Cal
     model = str(entries.get("distortionmodel", ""))
     if str(_first(entries, FISHEYE_FLAG) or "0") not in ("0", "false"):
         model = "fisheye"
+    if not model and distortion.size == FISHEYE_COUNT and distortion.any():
+        raise CameraError(WHICH_FOUR)
     size = _size(entries) or image_size
     if size is None:
         raise CameraError(
