@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.bags.counters import Counters
 from odometry.bags.message_fields import TWISTS, number_at
 from odometry.bags.side_agreement import SideAgreement
 from odometry.bags.wheel_names import is_wheel, side_of
@@ -89,6 +90,8 @@ class TreadSpeeds:
     ----------
     agreement : SideAgreement
         Whether the wheels of each side, whose mean is taken, agree.
+    counters : Counters
+        Of places that are whole numbers.
     too_fast : int
         Rows with a tread faster than FASTEST_M_S, which become NaN.
     """
@@ -98,6 +101,7 @@ class TreadSpeeds:
         self._separation_m = separation_m
         self._held: tuple[IntArray, FloatArray] | None = None
         self.agreement = SideAgreement(source)
+        self.counters = Counters()
         self.too_fast = 0
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -140,9 +144,9 @@ class TreadSpeeds:
             rows = np.concatenate([self._held[1], rows])
         self._held = stamps_ns[-1:], rows[-1:]
         seconds = np.diff(stamps_ns)[:, None] / 1e9
-        steps = np.diff(rows, axis=0)
         if self._source.kind == "twist":
-            return stamps_ns[:-1], _twists(rows, steps) / seconds
+            return stamps_ns[:-1], _twists(rows, np.diff(rows, axis=0)) / seconds
+        steps = self.counters.steps(rows)
         if np.isfinite(self._source.wraps_at):
             turn = self._source.wraps_at
             steps -= turn * np.rint(steps / turn)
