@@ -29,6 +29,11 @@ ARCHIVES = {
 }
 LONGEST_MAGIC = max(map(len, KINDS))
 SUFFIXES = re.compile(r".*\.(?:bag|bag\.active|mcap|db3)(?:\.zstd|\.zst)?$", re.IGNORECASE)
+TABLES = (".csv", ".tsv", ".txt", ".log")
+OF_TABLES = (
+    "A log of lines of numbers needs no import: rename its columns as in data/README.md (Run "
+    "folder), and check names what is left to convert"
+)
 LISTED = re.compile(
     r"^\s*- (?:path: )?[\"']?([^\s:\"']+\.(?:mcap|db3)(?:\.zstd)?)[\"']?\s*$", re.MULTILINE
 )
@@ -127,7 +132,9 @@ def _in_folder(folder: Path, losses: Losses) -> list[Path]:
             if name not in there
         ]
     if not files:
-        losses.append(f"{folder}: there is no .bag, .mcap or .db3 file in it")
+        words = f"{folder}: there is no .bag, .mcap or .db3 file in it"
+        tables = any(file.suffix.lower() in TABLES for file in folder.iterdir())
+        losses.append(f"{words}. {OF_TABLES}" if tables else words)
     return files
 
 
@@ -161,7 +168,8 @@ def _no_bag(file: Path) -> str:
         packed = "tar"
     if packed:
         return f"this is an archive ({packed}): unpack it, and import the bag that is in it"
-    return "this is no bag (neither ROS 1, nor MCAP, nor SQLite)"
+    words = "this is no bag (neither ROS 1, nor MCAP, nor SQLite)"
+    return f"{words}. {OF_TABLES}" if file.suffix.lower() in TABLES else words
 
 
 def _kind(file: Path) -> tuple[str, bool]:

@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.geometry.se3 import mount_of_optical
 
 MODELS = ("plumb_bob", "rational_polynomial", "")
+FISHEYE = ("equidistant", "fisheye", "kannala_brandt4")  # `camera --file` takes these
 STEEP = 0.5  # sine of 30 degrees
 COUNTS = (0, 4, 5, 8, 12, 14)  # of coefficients that OpenCV knows
 
@@ -32,6 +33,8 @@ def camera_table(
         matrix, distortion = values["p"].reshape(3, 4)[:, :3], np.zeros(0)
     if not matrix[0, 0] > 0:
         return {}, ["camera: its CameraInfo is not calibrated (the matrix is zero)"]
+    if info.distortion_model in FISHEYE and not rectified:
+        return {}, [_fisheye(info.distortion_model, robot_from_optical)]
     if info.distortion_model not in MODELS or len(distortion) not in COUNTS:
         return {}, [
             f"camera: the distortion model {info.distortion_model!r} with {len(distortion)} "
@@ -52,6 +55,19 @@ def camera_table(
         f"{len(distortion)} coefficients are read as plumb_bob (k1, k2, p1, p2, ...). If they are "
         "those of a fisheye lens (equidistant), the table is wrong: calibrate the camera"
     ]
+
+
+def _fisheye(model: str, robot_from_optical: FloatArray | None) -> str:
+    """What to do with a lens that the table cannot state as the message does."""
+    mount = ""
+    if robot_from_optical is not None:
+        numbers = (f"{round(x, 4) + 0.0:g}" for x in mount_of_optical(robot_from_optical))
+        mount = f" --mount {' '.join(numbers)}"
+    return (
+        f"camera: its lens is a fisheye ({model}), so that run.toml has no [camera] yet. Print the "
+        "CameraInfo into a file (ros2 topic echo --once, rostopic echo -n 1), and convert it: "
+        f"terrain-odometry camera RUN --file camera_info.yaml{mount} --out camera --write"
+    )
 
 
 def looks_along_z(robot_from_frame: FloatArray) -> bool:

@@ -68,6 +68,12 @@ class Plan:
     frames: Mapping[str, str] = field(default_factory=dict)
 
 
+NO_TRACK = (
+    "the track width of the robot is not known, and no robot description in the bag gives it: add "
+    f"--track-width METRES. To measure it, {HOW_TRACK}"
+)
+
+
 def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
     """Decide what is taken from which topic.
 
@@ -84,13 +90,15 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
     survey.robot.use_robot(own.robot)
     bodies = [body_frame(one.sample) for one in topics.values() if one.sample is not None]
     robot = robot_frame(survey.robot, topic_map.robot, filter(None, bodies), own.robot)
-    wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)
+    try:
+        wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)
+    except BagError as problem:
+        if robot.track_width_m is None:
+            raise BagError(f"{problem}. And {NO_TRACK}") from problem
+        raise
     separation = topic_map.wheels.get("separation", robot.track_width_m)
     if robot.track_width_m is None:
-        raise BagError(
-            "the track width of the robot is not known, and no robot description in the bag gives "
-            f"it: add --track-width METRES. To measure it, {HOW_TRACK}"
-        )
+        raise BagError(NO_TRACK)
     reference = _reference(everything, topics, topic_map, taken)
     world = _world(everything, topic_map, reference, survey)
     imu = topic_for(everything, topic_map.imu, "imu", (IMU,), topics)

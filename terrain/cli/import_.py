@@ -1,5 +1,6 @@
 """`terrain-odometry import`: a run folder from bags."""
 
+import re
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -163,6 +164,9 @@ def _value(name: str, said: Any) -> Any:
     return float(said) if name.endswith("sign") else [one.strip() for one in said.split(",")]
 
 
+OPTION = re.compile(r"--[a-z-]+ [A-Z]+\b")  # with what is to be put in its place
+
+
 def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.message_fields import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
@@ -181,14 +185,16 @@ def _list(bags: tuple[Path, ...]) -> None:
     if all(topic.message_type in NO_WHEELS for topic in found.topics.values()):
         click.echo(f"Note: {NO_SPEEDS}")
         return
+    missing = ""
     try:
         make_plan(found, TopicMap())
     except BagError as problem:
         click.echo(f"Note: {problem}")
+        missing = "".join(f" {option}" for option in OPTION.findall(str(problem)))
     named = " ".join(shlex.quote(str(bag)) for bag in bags)
     wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
     out = shlex.quote(_run_name(bags[0]))
-    click.echo(f"Next: terrain-odometry import {named} --out {out}{wheels}")
+    click.echo(f"Next: terrain-odometry import {named} --out {out}{wheels}{missing}")
 
 
 def _run_name(bag: Path) -> str:

@@ -179,7 +179,7 @@ def _yaw_reversed(evidence: Evidence, others: str) -> Finding:
         f"course and yaw of pose.csv agree only with the sign of yaw reversed (concentration "
         f"{evidence.heading.concentration:.2f}, offset {offset:.0f} degrees; {others})",
         f"Yaw is reversed: {cause}",
-        "Convert: yaw = pi/2 - bearing" if compass else "Negate yaw",
+        "Convert: yaw = pi/2 - bearing [rad]" if compass else "Negate yaw",
         times("pose", -1.0, "yaw"),
     )
 
