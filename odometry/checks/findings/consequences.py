@@ -97,7 +97,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | YAW
     | {"treads_unrelated", "absurd_speed", "tread_left_reversed", "tread_right_reversed"}
     | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"}
-    | {"one_motion"},
+    | {"one_motion", "poses_unrelated"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
     "uneven_stamps": frozenset({"odometry_gap", "clock_set"}),
     "tread_late": OF_OTHER_TIMES | {"yaw_jumps"},

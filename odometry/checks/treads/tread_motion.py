@@ -18,6 +18,7 @@ SHORT = 0.1  # share of the windows: a span of fewer hardly moves a robust fit t
 SURELY = 0.1  # of the ordinary motion of a window: what a span that goes with the treads is off by
 OTHERWISE = 0.7  # of the motion by which it differs: on another terrain it does by a half
 SPEEDS = 0.5  # share of a motion from which columns that explain it are speeds
+FAR_BETTER = 0.1  # of what another relation leaves unexplained
 HALF = 0.5  # of the rows that such a time should have
 SHOWN = 3  # times of which begin and end are printed
 LOST = (
@@ -159,17 +160,17 @@ def is_read(evidence: Evidence, span: FloatArray) -> bool:
 
 
 def _counters(evidence: Evidence) -> Iterator[Finding]:
-    """Columns whose changes are a measured motion, while their values explain none."""
-    targets = list(_targets(evidence))
-    if any(plain is not None and plain.explained > SPEEDS for *_, plain in targets):
+    """Columns whose changes are a measured motion, while their values explain none.
+
+    A count that grows all the time explains the mean of a way ahead, too, but far worse.
+    """
+    both = [
+        (plain, _by_changes(evidence, motion, target))
+        for motion, target, plain in _targets(evidence)
+    ]
+    if any(plain and plain.explained > SPEEDS and not _far_better(by, plain) for plain, by in both):
         return  # a gyroscope that holds the change of the turn rate makes counters of speeds
-    for motion, target, _ in targets:
-        rows = [
-            np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
-            for at_s in (motion.start_s, motion.end_s)
-        ]
-        left, right = (evidence.run.odometry[n] for n in ("v_left", "v_right"))
-        changed = relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
+    for _, changed in both:
         if changed is None or changed.explained < 0.8:
             continue
         yield Finding(
@@ -182,3 +183,17 @@ def _counters(evidence: Evidence) -> Iterator[Finding]:
             "Differentiate them by t, and convert to m/s",
         )
         return
+
+
+def _by_changes(evidence: Evidence, motion: Motion, target: FloatArray) -> Relation | None:
+    """A measured motion by how far both columns change over its windows."""
+    rows = [
+        np.clip(np.searchsorted(evidence.stamps_s, at_s, side="right") - 1, 0, None)
+        for at_s in (motion.start_s, motion.end_s)
+    ]
+    left, right = (evidence.run.odometry[n] for n in ("v_left", "v_right"))
+    return relation(target, left[rows[1]] - left[rows[0]], right[rows[1]] - right[rows[0]])
+
+
+def _far_better(one: Relation | None, other: Relation) -> bool:
+    return one is not None and 1 - one.explained < FAR_BETTER * (1 - other.explained)

@@ -1,0 +1,21 @@
+"""Columns of encoder counts, where the robot drives ahead for the most part."""
+
+import numpy as np
+import pytest
+
+from tests.odometry.checks.faulty import treads
+from tests.odometry.checks.test_confirmed_causes import warnings
+from tests.odometry.checks.test_less_usual_faults import uneven
+from tests.odometry.checks.test_other_robots import PERIOD_S, without_gyroscope
+
+METRES_A_COUNT = {"metres": 1.0, "radians of 8 cm": 0.08, "ticks": 5e-4}
+
+
+@pytest.mark.parametrize("unit", METRES_A_COUNT)
+@pytest.mark.parametrize("gyroscope", [True, False])
+def test_counts_that_grow_all_the_time_are_named(unit, gyroscope):
+    """They explain a half of the way ahead, as any number of one sign does."""
+    run = uneven() if gyroscope else without_gyroscope(uneven())
+    step = PERIOD_S / METRES_A_COUNT[unit]
+    counted = treads(run, lambda *sides: tuple(step * np.cumsum(v) for v in sides))
+    assert warnings(counted) == ["treads_are_counters"]
