@@ -65,7 +65,8 @@ def _scattered(
         float(stamps_s[0]),
         float(stamps_s[-1]),
         f"positions scatter by {sigma_m:.2g} m: that is their noise in the filter, in place of "
-        f"{config.position_sigma_m:g} m",
+        f"{config.position_sigma_m:g} m. Errors that last for seconds (satellites, reflections) "
+        "come on top, and the sigmas of the estimate do not hold them",
         (sigma_m,),
     )
     return replace(config, position_sigma_m=sigma_m), (event,)

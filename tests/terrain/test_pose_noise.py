@@ -33,6 +33,7 @@ def test_a_run_takes_the_noise_that_the_recording_shows():
     assert result.config.filter.position_sigma_m == pytest.approx(0.5, rel=0.1)
     (event,) = [event for event in result.replay.events if event.kind == "noisy_positions"]
     assert "in place of 0.05 m" in event.text
+    assert "sigmas of the estimate do not hold them" in event.text
 
 
 @pytest.mark.parametrize(
