@@ -64,8 +64,8 @@ def _fisheye(model: str, robot_from_optical: FloatArray | None) -> str:
         numbers = (f"{round(x, 4) + 0.0:g}" for x in mount_of_optical(robot_from_optical))
         mount = f" --mount {' '.join(numbers)}"
     return (
-        f"camera: its lens is a fisheye ({model}), so that run.toml has no [camera] yet. Print the "
-        "CameraInfo into a file (ros2 topic echo --once, rostopic echo -n 1), and convert it: "
+        f"camera: its lens is a fisheye ({model!r}), so that run.toml has no [camera] yet. Print "
+        "the CameraInfo into a file (ros2 topic echo --once, rostopic echo -n 1), and convert it: "
         f"terrain-odometry camera RUN --file camera_info.yaml{mount} --out camera --write"
     )
 
