@@ -98,14 +98,32 @@ def best(topics: Mapping[str, Topic], role: str) -> str | None:
 
 
 def candidates(topics: Mapping[str, Topic], role: str) -> list[str]:
-    """Names of the topics that fit a role best, that of most messages first; equals otherwise."""
+    """Names of the topics that fit a role best, that of most messages first; equals otherwise.
+
+    Images of a camera with a CameraInfo come first: without one no run can use them.
+    """
     ranked = sorted(
-        (one.rank, -topic.count, name)
+        ((role == "images" and not camera_info_beside(topics, name), one.rank), -topic.count, name)
         for name, topic in topics.items()
         for one in guess(topic)
         if one.role == role and one.rank < LIKELY
     )
     return [name for rank, _, name in ranked if rank == ranked[0][0]]
+
+
+def camera_info_beside(topics: Mapping[str, Topic], images: str) -> str:
+    """The CameraInfo in the folder of an image topic, or in one above it; empty where none is.
+
+    One that is in no folder belongs to images that are in none.
+    """
+    folder = images.removesuffix("/compressed").rpartition("/")[0]
+    while True:
+        name = f"{folder}/camera_info"
+        if name in topics and topics[name].message_type == CAMERA_INFO:
+            return name
+        folder = folder.rpartition("/")[0]
+        if not folder:
+            return ""
 
 
 def _joints(topic: Topic) -> list[Guess]:

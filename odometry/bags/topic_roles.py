@@ -6,9 +6,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from odometry.bags.message_fields import CAMERA_INFO, POSES
+from odometry.bags.message_fields import POSES
 from odometry.bags.topic import Topic
-from odometry.bags.topic_guess import best, guess
+from odometry.bags.topic_guess import best, camera_info_beside, guess
 from odometry.errors import BagError
 from odometry.io.structured import read_toml
 
@@ -166,13 +166,7 @@ def camera_info_of(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], im
         return ""
     if said is not None:
         return topic_named(topics, said).name
-    folder = images.rsplit("/", 1)[0]
-    while folder:
-        name = f"{folder}/camera_info"
-        if name in topics and topics[name].message_type == CAMERA_INFO:
-            return name
-        folder = folder.rsplit("/", 1)[0]
-    return ""
+    return camera_info_beside(topics, images)
 
 
 def other_odometry_of(

@@ -167,6 +167,33 @@ def test_other_odometry_is_that_of_the_robot_not_of_the_sensor(tmp_path):
     assert rows[1:] == pytest.approx([1, 1.8, pi / 2])
 
 
+def test_a_camera_with_a_camera_info_is_taken_before_one_without(tmp_path):
+    bag = drive()
+    bag.image(0.6, np.zeros((48, 64), np.uint8), "mono8")
+    _, kind, t_s, message = bag.written[-1]
+    bag.written[-1] = ("/front/image_raw", kind, t_s, message)
+    run, said = tables(bag, tmp_path)
+    assert "images: /camera/image_raw" in said.notes
+    assert "camera" in run.settings
+
+
+@pytest.mark.parametrize(
+    ("images", "info", "is_of_it"),
+    [
+        ("/image_raw", "/camera_info", True),
+        ("/image_raw/compressed", "/camera_info", True),
+        ("/front/image_raw", "/camera_info", False),
+        ("/front/image_raw/compressed", "/front/camera_info", True),
+    ],
+)
+def test_the_camera_info_that_belongs_to_images(tmp_path, images, info, is_of_it):
+    bag = drive()
+    names = {"/camera/image_raw": images, "/camera/camera_info": info}
+    bag.written = [(names.get(topic, topic), *others) for topic, *others in bag.written]
+    run, _ = tables(bag, tmp_path)
+    assert ("camera" in run.settings) == is_of_it
+
+
 def test_rectified_images_have_the_matrix_of_the_projection(tmp_path):
     bag = drive()
     projection = np.array([[40, 0, 30], [0, 40, 20], [0, 0, 1]])
