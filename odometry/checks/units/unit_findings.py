@@ -123,6 +123,7 @@ def tread_unit(
         usual = RADII_M[0] < 1 / factor < RADII_M[1]
         rate = f", rad/s of wheels of {1 / factor:.2g} m radius" if usual else ""
         words.append(f"scaled by {factor:.2g} (gear ratio{rate})")
+        words.append("right, and positions are scaled (a web map)")
     several = ": these cannot be distinguished" if len(words) > 1 else ""
     off = ORDINARY_FORWARD * measured if COUNTS in others and measured else unit.factor
     return Finding(

@@ -47,7 +47,8 @@ def test_the_likelier_of_equal_units_comes_first(radius_m, factor, first):
     said = causes(Unit("of this name", factor), radius_m)
     assert said[0].startswith(f"Tread speeds are {first}")
     rare = [place for place, one in enumerate(said) if "mile" in one or "feet" in one]
-    assert rare in ([], [len(said) - 2])  # before the gear ratio
+    assert rare in ([], [len(said) - 3])  # before the gear ratio and the scale of positions
+    assert (said[-1] == "right, and positions are scaled (a web map)") == (factor < 4)
 
 
 def test_a_place_is_said_in_words():
