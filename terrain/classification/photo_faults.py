@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import FloatArray
+from terrain.classification.shifted_frames import shifted_frames
 from terrain.classification.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_half
 from terrain.errors import PatchError
 from terrain.spelling import BY_SPELLING, alike_names
@@ -76,6 +77,7 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
 
     By the correlation of small blurred thumbnails: images of one scene, frames of a camera that
     hardly moves, copies that were compressed again. Those without any contrast are like none.
+    And frames of a burst, by `shifted_frames`.
     """
     photos = list(group_of)
     thumbnails = np.stack([_thumbnail(photo) for photo in photos])
@@ -84,7 +86,11 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
     alike[group[:, None] == group] = -1.0
     nearest = alike.argmax(axis=1)
     found = np.flatnonzero(alike[np.arange(len(photos)), nearest] > ALIKE)
-    return [(photos[int(i)], photos[int(nearest[i])]) for i in found]
+    pairs = {photos[int(i)]: photos[int(nearest[i])] for i in found}
+    for one, other in shifted_frames(group_of):
+        pairs.setdefault(one, other)
+        pairs.setdefault(other, one)
+    return sorted(pairs.items())
 
 
 def _thumbnail(photo: Path) -> FloatArray:

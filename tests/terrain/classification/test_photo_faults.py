@@ -72,3 +72,15 @@ def test_frames_of_one_scene_look_alike_and_other_photographs_do_not(write, rng)
     own_groups = {photo: str(photo) for photo in photos}
     assert look_alikes(own_groups) == [(first, second), (second, first)]
     assert look_alikes({**own_groups, first: "scene", second: "scene"}) == []
+
+
+def test_shifted_frames_of_a_burst_look_alike(write, rng):
+    _, scene = write("scene.png", np.kron(rng.integers(60, 190, (120, 160)), np.ones((2, 2), int)))
+    frames = [
+        write(f"sand/IMG_{n}.png", scene[9 * n : 9 * n + 200, 7 * n : 7 * n + 260])[0]
+        for n in range(3)
+    ]
+    others = [write(f"sand/IMG_{n}.jpg", rng.integers(60, 190, (200, 260)))[0] for n in (5, 6)]
+    alike = look_alikes({photo: str(photo) for photo in [*frames, *others]})
+    assert [one for one, _ in alike] == frames
+    assert look_alikes(dict.fromkeys(frames, "scene")) == []
