@@ -58,7 +58,8 @@ def balanced_accuracy_interval(
     """Return the 95 % bootstrap interval of the balanced accuracy.
 
     Whole groups (photographs) are drawn with replacement within each class, since patches of one
-    photograph are no independent evidence.
+    photograph are no independent evidence. A class of which all are right, or all wrong, has
+    nothing to draw: its recall is drawn from what so many groups leave possible (Jeffreys).
     """
     recalls = []
     for c in np.unique(codes):
@@ -66,10 +67,15 @@ def balanced_accuracy_interval(
         _, members = np.unique(groups[chosen], return_inverse=True)
         sizes = np.bincount(members)
         right = np.bincount(members, weights=(answers == codes)[chosen])
+        if right.sum() in {0, sizes.sum()}:
+            of_all = rng.beta(len(sizes) + 0.5, 0.5, BOOTSTRAP_SAMPLES)
+            recalls.append(of_all if right.any() else 1 - of_all)
+            continue
         draws = rng.multinomial(len(sizes), np.full(len(sizes), 1 / len(sizes)), BOOTSTRAP_SAMPLES)
         recalls.append((draws @ right) / (draws @ sizes))
     low, high = np.quantile(np.mean(recalls, axis=0), [0.025, 0.975])
-    return float(low), float(high)
+    found = balanced_accuracy(codes, answers)
+    return min(float(low), found), max(float(high), found)
 
 
 def paired_difference(

@@ -56,7 +56,19 @@ def test_patches_of_one_photograph_are_one_piece_of_evidence(rng):
         np.random.default_rng(1),
     )
     assert many == pytest.approx(alone, abs=1e-12)
-    assert balanced_accuracy_interval(codes, codes, codes, rng) == (1.0, 1.0)
+
+
+def test_few_photographs_that_are_all_right_are_no_certainty(rng):
+    codes = np.repeat([0, 1], 50)
+    low, high = balanced_accuracy_interval(codes, codes, codes, rng)  # one photograph a class
+    assert low < 0.4
+    assert high == 1.0
+    many, _ = balanced_accuracy_interval(codes, codes, np.arange(100), rng)
+    assert 0.95 < many < 1.0
+    assert balanced_accuracy_interval(codes, 1 - codes, codes, rng) == (
+        0.0,
+        pytest.approx(1 - low, abs=0.02),
+    )
 
 
 def test_roc_area_counts_pairs(rng):
