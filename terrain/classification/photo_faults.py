@@ -13,7 +13,10 @@ from terrain.classification.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_
 from terrain.errors import PatchError
 from terrain.spelling import BY_SPELLING, alike_names
 
-OTHER_SUFFIXES = (".webp", ".tif", ".tiff", ".bmp", ".gif", ".heic", ".avif", ".ppm", ".pgm")
+OTHER_SUFFIXES = (
+    *(".webp", ".tif", ".tiff", ".bmp", ".gif", ".heic", ".heif", ".avif", ".ppm", ".pgm"),
+    *(".jpe", ".jfif", ".jp2", ".dng"),
+)
 
 
 def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -> None:
@@ -48,6 +51,24 @@ def check_classes(root: Path, classes: Sequence[str], suffixes: Sequence[str]) -
             f"{root}: {' and '.join(map(repr, alike))} {BY_SPELLING}; expected one "
             "folder for each terrain"
         )
+
+
+def unread_note(photos: Sequence[Path], suffixes: Sequence[str]) -> str:
+    """Which images beside or below photographs are not read, by format or place; "" for none."""
+    folders = sorted({photo.parent for photo in photos})
+    below = [(path, path.parent == folder) for folder in folders for path in folder.rglob("*")]
+    unread = sorted(
+        path
+        for path, beside in below
+        if path.suffix.lower() in (OTHER_SUFFIXES if beside else (*OTHER_SUFFIXES, *suffixes))
+        and not any(part.startswith(".") for part in path.relative_to(path.parents[1]).parts)
+    )
+    if not unread:
+        return ""
+    return (
+        f"{len(unread)} images beside the {len(photos)} photographs are not read, such as "
+        f"{unread[0]}: convert them to JPEG or PNG, in the folder of their terrain itself"
+    )
 
 
 def check_no_photo_in_two_classes(photos: Sequence[tuple[Path, str]]) -> None:

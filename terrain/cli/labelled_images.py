@@ -32,10 +32,14 @@ def print_held_out(
         If the folder is not as the format says, or the model was trained on every image in it.
     """
     from terrain.classification.held_out import answer_photos, held_out_score
-    from terrain.classification.patches import find_photos
+    from terrain.classification.patches import SUFFIXES, find_photos
+    from terrain.classification.photo_faults import unread_note
     from terrain.errors import PatchError
 
-    answers, unusable = answer_photos(classifier, find_photos(folder))
+    photos = find_photos(folder)
+    if unread := unread_note([photo.path for photo in photos], SUFFIXES):
+        click.echo(f"Note: {unread}", err=True)
+    answers, unusable = answer_photos(classifier, photos)
     for path, reason in unusable.items():
         click.echo(f"left out: {path}: {reason}", err=True)
     held_out = [each for each in answers if not each.in_training]

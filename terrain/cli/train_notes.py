@@ -5,8 +5,8 @@ from pathlib import Path
 
 from terrain.classification.manifest import read_manifest
 from terrain.classification.noticed_alterations import unnoticed
-from terrain.classification.patches import LabelledPatches
-from terrain.classification.photo_faults import look_alikes
+from terrain.classification.patches import SUFFIXES, LabelledPatches
+from terrain.classification.photo_faults import look_alikes, unread_note
 from terrain.classification.training import LARGEST_PATCH_PX, Training
 
 
@@ -27,6 +27,8 @@ def notes(
     """
     classifier, patches = training.classifier, training.patches
     size = classifier.patch_size_px
+    if unread := unread_note(list(patches.sides_px), SUFFIXES):
+        yield f"Note: {unread}"
     for path in patches.too_small:
         yield f"left out, smaller than {size} x {size} pixels: {path}"
     if chooses_size:

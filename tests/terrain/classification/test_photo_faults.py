@@ -4,8 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.classification.patches import find_photos
-from terrain.classification.photo_faults import check_no_photo_in_two_classes, look_alikes
+from terrain.classification.patches import SUFFIXES, find_photos
+from terrain.classification.photo_faults import (
+    check_no_photo_in_two_classes,
+    look_alikes,
+    unread_note,
+)
 from terrain.classification.training import train
 from terrain.errors import PatchError
 
@@ -42,6 +46,17 @@ def test_other_folders_are_no_classes(tmp_path, write):
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).write_text("text", encoding="utf-8")
     assert [photo.label for photo in find_photos(tmp_path)] == ["sand"]
+
+
+def test_images_of_a_class_that_are_not_read_are_counted(tmp_path, write):
+    photo, _ = write("sand/a.jpg")
+    assert unread_note([photo], SUFFIXES) == ""
+    for name in ("sand/b.HEIC", "sand/c.webp", "sand/day_2/d.jpg", "sand/.e.webp", "sand/f.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(b"an image")
+    note = unread_note([photo], SUFFIXES)
+    assert note.startswith("3 images beside the 1 photographs are not read, such as ")
+    assert "b.HEIC" in note
 
 
 @pytest.mark.parametrize("other", ["Sand", "sand ", "SAND"])

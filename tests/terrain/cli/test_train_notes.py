@@ -48,3 +48,13 @@ def test_photographs_that_make_patches_small_are_named(tmp_path, rng):
     for name in "ab":
         (tmp_path / f"sand/{name}.png").unlink()
     assert not said(tmp_path, chooses_size=True)  # half of them are small: so are the photographs
+
+
+def test_photographs_of_another_format_are_not_lost_without_a_word(tmp_path, rng):
+    (tmp_path / "sand").mkdir()
+    image = rng.integers(0, 256, (80, 90)).astype(np.uint8)
+    cv2.imwrite(f"{tmp_path / 'sand/a'}.png", image)
+    assert not said(tmp_path)
+    (tmp_path / "sand/b.webp").write_bytes(b"an image")
+    (note,) = said(tmp_path)
+    assert note.startswith("Note: 1 images beside the 1 photographs are not read")
