@@ -31,6 +31,7 @@ FILES = {
 SUFFIXES = (".bag", ".mcap", ".db3", ".active")
 PACKED = (".zstd", ".zst")
 MOST_ENTRIES = 1000  # of a folder that are listed
+LEVEL = 0.2  # height of a path over its extent: below, z points up
 
 
 def read_settings(folder: Path) -> dict[str, Any]:
@@ -152,21 +153,28 @@ def poses_within(trajectory: SpatialTrajectory, odometry: Table) -> int:
     return within
 
 
+def travel_axis(trajectory: SpatialTrajectory) -> int:
+    """Axis of the body (0 is x) along which it moves most; 0 where nothing moves."""
+    moved = np.diff(trajectory.positions_m, axis=0)
+    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
+    return int(np.argmax(np.sum(body**2, axis=0)))
+
+
 def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
     """Why a trajectory seems not to have robot axes; empty where it seems to.
 
     A skid-steer robot moves most along x of its body.
     """
-    moved = np.diff(trajectory.positions_m, axis=0)
-    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
-    squares = np.sum(body**2, axis=0)
-    strongest = int(np.argmax(squares))
-    if strongest == 0:  # so it is where nothing moves
+    if (axis := travel_axis(trajectory)) == 0:
         return ""
-    return (
-        f"the body moves most along its {'xyz'[strongest]} axis; expected x "
-        "forward. Poses of a camera (z along the viewing direction, y down) need --axes optical"
-    )
+    doubt = f"the body moves most along its {'xyz'[axis]} axis; expected x forward."
+    extent_m = np.ptp(trajectory.positions_m, axis=0)
+    if axis == 1 or extent_m[2] < LEVEL * extent_m[:2].max():
+        body = "a sensor whose own axes are turned"
+        if axis != 1:
+            body = "a camera's optical frame (z along the viewing direction) in a map whose z is up"
+        return f"{doubt} Poses of {body}: write those of the robot's base frame"
+    return f"{doubt} Poses of a camera (z along the viewing direction, y down) need --axes optical"
 
 
 def is_named_bag(path: Path) -> bool:

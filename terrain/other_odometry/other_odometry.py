@@ -16,12 +16,12 @@ from odometry.evaluation.other_odometry import LONGEST_GAP_S, Judge, OtherScore,
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import Score
 from odometry.io.csv_table import read_csv_table
-from odometry.io.run_folder import doubt_of_axes
+from odometry.io.run_folder import doubt_of_axes, travel_axis
 from odometry.io.structured import read_json
 from odometry.io.trajectory_files import OPTICAL, format_of, read_trajectory
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
-from terrain.other_odometry.other_headings import other_readings, pose_fault
+from terrain.other_odometry.other_headings import PoseFault, other_readings, pose_fault
 from terrain.other_odometry.other_stamps import late_by_s, late_note
 
 FOLDER = "other_odometry"  # of a run folder: odometry that a bag had, as NAME.csv
@@ -133,23 +133,29 @@ def _is_table(file: Path) -> bool:
 
 @dataclass(frozen=True)
 class Read:
-    """A trajectory as its file was read, why its axes are doubted, and what else yaw may be."""
+    """A trajectory as its file was read, why its axes are doubted, and what else yaw may be.
+
+    Where `turned` its body moves most along z, as no robot in the plane does.
+    """
 
     trajectory: Trajectory
     doubt: str = ""
+    turned: bool = False
     readings: Mapping[str, FloatArray] = field(default_factory=dict)
 
 
 def _read(file: Path, axes: str, times: Path | None) -> Read:
     spatial = read_trajectory(file, times=times, axes=axes)
     readings = other_readings(spatial, format_of(file)) if axes != OPTICAL else {}
-    return Read(spatial.plane, doubt_of_axes(spatial), readings)
+    return Read(spatial.plane, doubt_of_axes(spatial), travel_axis(spatial) == 2, readings)
 
 
 def _judged(read: Read, judge: Judge) -> dict[str, Any]:
     """Errors of a trajectory with notes; no numbers where its poses are not what they seem."""
     found = score_other(read.trajectory, judge)
     fault = pose_fault(read.trajectory, judge, read.readings)
+    if fault is None and read.turned:
+        fault = PoseFault(f"{read.doubt}. Its errors are not counted: they would be those of axes")
     if fault is not None and not fault.counts:
         uncounted = replace(found, score=Score(0), scale=np.nan, turned_rad=np.nan)
         return _table(uncounted, [fault.note])

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import TrajectoryError
 from odometry.geometry import se3
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.run_folder import doubt_of_axes, pose_columns, poses_within
 from odometry.io.trajectory_files import to_optical
@@ -48,3 +49,13 @@ def test_poses_of_a_camera_are_doubted():
     moving = driving(np.linspace(0, 5, 11))
     assert doubt_of_axes(moving) == ""
     assert "along its z axis; expected x forward" in doubt_of_axes(to_optical(moving))
+
+
+def test_a_camera_in_a_map_whose_z_is_up_is_not_sent_to_optical_axes():
+    moving = driving(np.linspace(0, 5, 11))
+    turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)  # the body alone, not the map
+    said = doubt_of_axes(SpatialTrajectory(moving.stamps_s, moving.poses @ turn.T))
+    assert "optical frame" in said
+    assert "base frame" in said
+    assert "--axes" not in said
+    assert "--axes optical" in doubt_of_axes(to_optical(moving))

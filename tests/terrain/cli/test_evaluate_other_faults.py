@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.geometry import se3
+from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from odometry.io.trajectory_files import read_trajectory
+from odometry.io.tum import write_spatial_tum
 from odometry.trajectory import SpatialTrajectory, Trajectory
 from tests.terrain.cli.test_evaluate_others import answer, others, winding
 
@@ -102,3 +104,13 @@ def test_a_poor_odometer_keeps_its_numbers(winding, tmp_path):
     result = found(winding, written(tmp_path / "slam.tum", winding, lambda _: xyzw))
     assert result["windows"] > 0
     assert not any("turns" in note and "ours" in note for note in result["notes"])
+
+
+def test_a_body_of_optical_axes_in_a_map_of_ours_is_not_counted(winding, tmp_path):
+    ours = read_trajectory(winding / "results" / "odometer.tum")
+    turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)
+    write_spatial_tum(tmp_path / "slam.tum", SpatialTrajectory(ours.stamps_s, ours.poses @ turn.T))
+    result = found(winding, tmp_path / "slam.tum")
+    assert (result["windows"], result["scale"]) == (0, None)
+    assert "moves most along its z axis" in result["notes"][0]
+    assert "base frame. Its errors are not counted" in result["notes"][0]
