@@ -69,7 +69,7 @@ FEW_PLACES = 5  # as many folds has the cross-validation of `train`
 
 def summary(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> str:
     """Squares of each run, patches of each class, and what is too little for training."""
-    return "\n".join([*_runs(ground, given), "", *_classes(ground), *_notes(ground)])
+    return "\n".join([*_runs(ground, given), "", *_classes(ground), *_notes(ground, given)])
 
 
 def _runs(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
@@ -95,7 +95,13 @@ def _classes(ground: "LabelledTerrain") -> Iterator[str]:
         yield f"  {label:{width}}  {patches[label]:5d} of {places[label]} places"
 
 
-def _notes(ground: "LabelledTerrain") -> Iterator[str]:
+def _notes(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
+    known = {name for each in ground.chosen for name in (each.label, each.of.label)}
+    if lost := sorted({name for of in given for name in of.terrains} - known):
+        yield (
+            f"Note: no patch shows {', '.join(lost)}: given outside of the recorded time, too "
+            "briefly, or where no image shows what was driven over"
+        )
     few = [f"{label} ({count})" for label, count in _places(ground).items() if count < FEW_PLACES]
     if few:
         yield (

@@ -190,6 +190,14 @@ def test_a_span_outside_of_the_run_leaves_no_patch_and_says_why(across_run, tmp_
     assert re.search(r"squares of terrain: \d+ of no given terrain", str(answer.exception))
 
 
+def test_a_terrain_of_which_no_patch_is_left_is_named(across_run, first, tmp_path):
+    spans = [*SPANS[:-1], "6:60=gravel", "--span", "300:400=mud"]
+    said = invoke(across_run, "--out", tmp_path / "patches", *spans)
+    assert said.exit_code == 0
+    assert "Note: no patch shows mud: given outside of the recorded time" in said.stdout
+    assert "no patch shows" not in first[1].stdout
+
+
 def test_spans_count_from_the_first_stamp_also_of_a_part(across_run, tmp_path):
     part = tmp_path / "part"
     answer = invoke(across_run, "--out", part, *SPANS, "--from", "1", "--to", "8")
