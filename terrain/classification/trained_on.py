@@ -103,9 +103,12 @@ def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
         photos.setdefault(label, set()).add(group)
     if len(photos) < 2 or min(map(len, photos.values())) < 2:
         seen = ", ".join(f"{label} {len(members)}" for label, members in photos.items())
+        few = [str(label) for label, members in photos.items() if len(members) < 2]
         raise PatchError(
             "training needs at least 2 classes with patches of at least 2 photographs each, "
             f"so that some can be held out; photographs found: {seen or 'none'}"
+            + (f". Add photographs of {', '.join(few)}" if few else "")
+            + (", or leave that out" if few and len(photos) - len(few) > 1 else "")
         )
 
 
