@@ -124,6 +124,7 @@ class LiveOdometry:
         classifier = None if self._watcher is None else self._watcher.classifier
         self._name_notes = name_notes(initial, classifier, parameters)
         self._gaps = GapsSoFar()
+        self._lost_s, self._lost_until_s = 0.0, 0.0
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
 
@@ -155,10 +156,20 @@ class LiveOdometry:
     def notes(self) -> tuple[str, ...]:
         """What to know before the answers are used; some can be said after several images only.
 
-        Terrains that the parameter set lacks, images unlike the training photographs, `feel_note`.
+        Terrains that the parameter set lacks, images unlike the training photographs, `feel_note`,
+        and time without tread speeds.
         """
         likeness = None if self.likeness is None else self.likeness.note
-        return tuple(filter(None, (*self._name_notes, likeness, self.feel_note)))
+        lost = (
+            f"no tread speeds came for {self._lost_s:.1f} s in all while a tread turned, the last "
+            f"time until {self._lost_until_s:.2f} s: messages were lost, or the clock was set. "
+            "Where the robot went meanwhile is not known, and the odometer is off by it"
+        )
+        return tuple(
+            filter(
+                None, (*self._name_notes, likeness, self.feel_note, lost if self._lost_s else "")
+            )
+        )
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.
@@ -184,6 +195,9 @@ class LiveOdometry:
             self._estimate = started(self._ekf, self._source, frame)
             self._odometer = RunningOdometer(self._estimate)
         else:
+            if frame.in_gap:
+                self._lost_s += frame.stamp_s - self._estimate.stamp_s
+                self._lost_until_s = frame.stamp_s
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
             self._odometer.step(self._estimate)
         odometer = (self._odometer.pose, self._odometer.covariance, self._odometer.twist)

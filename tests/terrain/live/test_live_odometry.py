@@ -236,3 +236,14 @@ def test_terrains_that_the_set_lacks_are_noted_before_the_first_frame(across_run
     (note,) = live.notes
     assert note.startswith("the model knows 'boards', 'gravel', the parameter set does not")
     assert note.endswith("'Boards' there is 'boards' here: give both one name")
+
+
+def test_time_without_tread_speeds_is_noted():
+    live = LiveOdometry(Robot(0.5))
+    stamps_s = [*np.arange(0, 3, 0.1), *np.arange(9, 11, 0.1)]
+    for row, stamp_s in enumerate(stamps_s):
+        assert live.notes == () or stamp_s > 9
+        live.step(Frame(stamp_s, np.array([0.5, 0.5]), row, None, None))
+    (note,) = live.notes
+    assert note.startswith("no tread speeds came for 6.1 s in all while a tread turned")
+    assert "until 9.00 s" in note
