@@ -1,7 +1,7 @@
 """Labelled photographs of terrain: find them, group them, cut them to patches of one size."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,11 +12,12 @@ from terrain.classification.manifest import Manifest, read_manifest
 from terrain.classification.photo_faults import check_classes
 from terrain.classification.thumbnails import thumbnail_text
 from terrain.classification.trained_on import TrainedOn, check_names, image_sum
-from terrain.errors import PatchError
+from terrain.errors import ImageError, PatchError
 from terrain.images import read_image
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
 PATCHES_PER_PHOTO = 60
+MOST_NAMED = 3  # photographs of an error
 
 
 @dataclass(frozen=True)
@@ -140,11 +141,10 @@ def load_patches(
     PatchError
         If a class has no photograph of at least `size_px` x `size_px`.
     ImageError
-        If a photograph cannot be read.
+        If photographs cannot be read; all of them are counted.
     """
     patches = LabelledPatches()
-    for photo in photos:
-        image = read_image(photo.path)
+    for photo, image in _read(photos):
         cut = cut_patches(image, size_px, max(size_px // 2, 1))
         if len(cut) > max_per_photo:
             cut = [cut[i] for i in np.linspace(0, len(cut) - 1, max_per_photo).astype(int)]
@@ -166,6 +166,20 @@ def load_patches(
     return patches
 
 
+def _read(photos: Sequence[LabelledPhoto]) -> Iterator[tuple[LabelledPhoto, ByteImage]]:
+    """Each photograph with its pixels; at the end ImageError with all that cannot be read."""
+    reasons = []
+    for photo in photos:
+        try:
+            yield photo, read_image(photo.path)
+        except ImageError as error:
+            reasons.append(str(error))
+    if reasons:
+        count = "" if len(reasons) == 1 else f"{len(reasons)} photographs cannot be read: "
+        more = f"; and {len(reasons) - MOST_NAMED} more" if len(reasons) > MOST_NAMED else ""
+        raise ImageError(f"{count}{'; '.join(reasons[:MOST_NAMED])}{more}")
+
+
 def _starts(length: int, size_px: int, stride_px: int) -> range:
     if length < size_px:
         return range(0)
@@ -182,7 +196,7 @@ def fitting_side_px(photos: Sequence[LabelledPhoto]) -> int:
     ImageError
         If a photograph cannot be read.
     """
-    sides = [min(read_image(photo.path).shape[:2]) for photo in photos]
+    sides = [min(image.shape[:2]) for _, image in _read(photos)]
     return int(np.percentile(sides, 10, method="lower"))
 
 

@@ -4,14 +4,14 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.classification.patches import SUFFIXES, find_photos
+from terrain.classification.patches import SUFFIXES, find_photos, load_patches
 from terrain.classification.photo_faults import (
     check_no_photo_in_two_classes,
     look_alikes,
     unread_note,
 )
 from terrain.classification.training import train
-from terrain.errors import PatchError
+from terrain.errors import ImageError, PatchError
 
 
 @pytest.fixture
@@ -57,6 +57,15 @@ def test_images_of_a_class_that_are_not_read_are_counted(tmp_path, write):
     note = unread_note([photo], SUFFIXES)
     assert note.startswith("3 images beside the 1 photographs are not read, such as ")
     assert "b.HEIC" in note
+
+
+def test_all_photographs_that_cannot_be_read_are_counted_at_once(tmp_path, write):
+    write("sand/a.jpg")
+    for name in "bcdef":
+        (tmp_path / f"sand/{name}.jpg").write_bytes(b"no image")
+    words = r"5 photographs cannot be read: .*b\.jpg: .*c\.jpg: .*d\.jpg: .*; and 2 more$"
+    with pytest.raises(ImageError, match=words):
+        load_patches(find_photos(tmp_path), 16)
 
 
 @pytest.mark.parametrize("other", ["Sand", "sand ", "SAND"])
