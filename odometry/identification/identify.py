@@ -181,6 +181,7 @@ def robot_of(runs: Sequence[Run]) -> Robot:
             raise IdentificationError(
                 f"{second.folder}: [robot] {name} = {there}, but {first.folder} has {here}; "
                 "expected runs of one robot"
+                + (", with its own mass also where it carries a load" if name == "mass" else "")
             )
         if stated:
             robot = replace(robot, **{name: next(iter(stated))})

@@ -121,6 +121,9 @@ def test_robots_of_different_width_are_refused(ice, make):
     ):
         identify([ice, wide], "icr")
     assert robot_of([ice, ice]) == ice.robot
+    light, loaded = (replace(ice, robot=replace(ice.robot, mass=mass)) for mass in (50.0, 80.0))
+    with pytest.raises(IdentificationError, match="its own mass also where it carries a load"):
+        robot_of([light, loaded])
 
 
 def test_no_run_is_refused():
