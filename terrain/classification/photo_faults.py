@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.checks.findings.finding import counted
 from terrain.classification.shifted_frames import shifted_frames
 from terrain.classification.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_half
 from terrain.errors import PatchError
@@ -65,9 +66,10 @@ def unread_note(photos: Sequence[Path], suffixes: Sequence[str]) -> str:
     )
     if not unread:
         return ""
+    there = counted(len(photos), "photograph")
     return (
-        f"{len(unread)} images beside the {len(photos)} photographs are not read, such as "
-        f"{unread[0]}: convert them to JPEG or PNG, in the folder of their terrain itself"
+        f"not read: {counted(len(unread), 'image')} beside {there}, such as {unread[0]}: "
+        "convert them to JPEG or PNG, in the folder of their terrain itself"
     )
 
 

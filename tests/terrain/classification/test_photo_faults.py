@@ -55,7 +55,7 @@ def test_images_of_a_class_that_are_not_read_are_counted(tmp_path, write):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_bytes(b"an image")
     note = unread_note([photo], SUFFIXES)
-    assert note.startswith("3 images beside the 1 photographs are not read, such as ")
+    assert note.startswith("not read: 3 images beside 1 photograph, such as ")
     assert "b.HEIC" in note
 
 

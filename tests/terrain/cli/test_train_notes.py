@@ -57,4 +57,4 @@ def test_photographs_of_another_format_are_not_lost_without_a_word(tmp_path, rng
     assert not said(tmp_path)
     (tmp_path / "sand/b.webp").write_bytes(b"an image")
     (note,) = said(tmp_path)
-    assert note.startswith("Note: 1 images beside the 1 photographs are not read")
+    assert note.startswith("Note: not read: 1 image beside 1 photograph, such as")
