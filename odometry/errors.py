@@ -40,7 +40,17 @@ class ExtraError(OdometryError):
 
 
 class BagError(OdometryError):
-    """A bag, or a map of its topics, cannot be used as it is."""
+    """A bag, or a map of its topics, cannot be used as it is.
+
+    Attributes
+    ----------
+    options : tuple of str
+        Of the command, with what is to be put in their place: what is missing.
+    """
+
+    def __init__(self, message: str, options: tuple[str, ...] = ()) -> None:
+        super().__init__(message)
+        self.options = options
 
 
 class ExportError(OdometryError):

@@ -68,9 +68,10 @@ class Plan:
     frames: Mapping[str, str] = field(default_factory=dict)
 
 
+TRACK = ("--track-width METRES",)
 NO_TRACK = (
     "the track width of the robot is not known, and no robot description in the bag gives it: add "
-    f"--track-width METRES. To measure it, {HOW_TRACK}"
+    f"{TRACK[0]}. To measure it, {HOW_TRACK}"
 )
 
 
@@ -94,11 +95,11 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         wheels = wheel_source(everything[taken], topic_map.wheels, robot.wheel_radius_m)
     except BagError as problem:
         if robot.track_width_m is None:
-            raise BagError(f"{problem}. And {NO_TRACK}") from problem
+            raise BagError(f"{problem}. And {NO_TRACK}", problem.options + TRACK) from problem
         raise
     separation = topic_map.wheels.get("separation", robot.track_width_m)
     if robot.track_width_m is None:
-        raise BagError(NO_TRACK)
+        raise BagError(NO_TRACK, TRACK)
     reference = _reference(everything, topics, topic_map, taken)
     world = _world(everything, topic_map, reference, survey)
     imu = topic_for(everything, topic_map.imu, "imu", (IMU,), topics)

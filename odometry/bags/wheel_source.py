@@ -21,6 +21,7 @@ from odometry.errors import BagError
 # Of the largest speed ahead: a skid-steer robot slides sideways by less, even about its own centre
 SIDEWAYS_SHARE = 0.3
 LEAST_TICKS = 100  # angles in rad are hardly ever whole at both ends of so long a way
+RADIUS = "--wheel-radius METRES"
 HOW_RADIUS = (
     "roll the robot straight ahead for ten turns of a wheel, and divide the way by 62.83; or "
     "measure from the centre of a wheel to the terrain, with the robot's weight on it"
@@ -103,8 +104,8 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
     if of_angle and radius_m is None:
         raise BagError(
             f"{topic.name}: wheel speeds in {unit} need the radius of the wheels, and no robot "
-            "description in the bag gives it: add --wheel-radius METRES. To measure it, "
-            f"{HOW_RADIUS}"
+            f"description in the bag gives it: add {RADIUS}. To measure it, {HOW_RADIUS}",
+            (RADIUS,),
         )
     reach_m = radius_m if of_angle and radius_m is not None else 1.0
     metres = one * reach_m / gear_of(topic_map)

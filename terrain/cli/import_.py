@@ -1,6 +1,5 @@
 """`terrain-odometry import`: a run folder from bags."""
 
-import re
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -164,9 +163,6 @@ def _value(name: str, said: Any) -> Any:
     return float(said) if name.endswith("sign") else [one.strip() for one in said.split(",")]
 
 
-OPTION = re.compile(r"--[a-z-]+ [A-Z]+\b")  # with what is to be put in its place
-
-
 def _list(bags: tuple[Path, ...]) -> None:
     from odometry.bags.message_fields import NO_WHEELS
     from odometry.bags.message_types import MessageTypes
@@ -190,7 +186,7 @@ def _list(bags: tuple[Path, ...]) -> None:
         make_plan(found, TopicMap())
     except BagError as problem:
         click.echo(f"Note: {problem}")
-        missing = "".join(f" {option}" for option in OPTION.findall(str(problem)))
+        missing = "".join(f" {option}" for option in problem.options)
     named = " ".join(shlex.quote(str(bag)) for bag in bags)
     wheels = "" if best(found.topics, "wheels") else " --wheels TOPIC"
     out = shlex.quote(_run_name(bags[0]))
