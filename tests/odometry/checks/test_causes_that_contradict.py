@@ -129,14 +129,16 @@ def test_speeds_that_read_zero_below_a_limit_are_no_lost_samples():
     assert "dropped_speeds" not in [finding.name for finding in check_recording(run).findings]
 
 
-def test_positions_held_beside_a_fresh_yaw_are_no_lost_reference():
+@pytest.mark.parametrize(("lasts_s", "filtered"), [(15.0, False), (2.0, True)])
+def test_positions_held_beside_a_fresh_yaw_are_no_lost_reference(lasts_s, filtered):
     run = turning_all_round()
-    rows = (run.pose["t"] > 60) & (run.pose["t"] < 75)
+    rows = (run.pose["t"] > 60) & (run.pose["t"] < 60 + lasts_s)
     first = int(np.flatnonzero(rows)[0])
     held = {n: np.where(rows, run.pose[n][first], run.pose[n]) for n in ("x", "y")}
     (found,) = check_recording(put(run, "pose", **held)).at(Level.WARNING)
     assert found.name == "frozen_poses"
     assert "while yaw goes on" in found.cause
+    assert ("a median" in found.cause) == filtered
 
 
 def test_curved_speeds_are_said_where_slip_hides_what_they_are():

@@ -10,6 +10,7 @@ from odometry.checks.poses.map_lines import drawn_to_lines
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 from tests.odometry.checks.test_columns_of_two_times import varied
+from tests.odometry.checks.test_confirmed_causes import turning_all_round
 from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
 
 
@@ -24,6 +25,15 @@ def test_yaw_in_coarse_steps_is_named(degrees):
     (found,) = check_recording(run).at(Level.WARNING)
     assert found.name == "coarse_yaw"
     assert f"{degrees:.3g} degrees apart" in found.seen
+
+
+@pytest.mark.parametrize("as_logged", [np.asarray, np.unwrap])
+def test_a_step_that_is_no_part_of_a_turn_is_named(as_logged):
+    """As a yaw that goes on beyond half a turn: many directions, each of them in few rows."""
+    run = yaw(turning_all_round(), lambda angle: np.round(as_logged(angle) / 0.1) * 0.1)
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "coarse_yaw"
+    assert "5.73 degrees apart" in found.seen
 
 
 @pytest.mark.parametrize("degrees", [1, 3])
