@@ -19,6 +19,15 @@ def least_squares(columns: FloatArray, target: FloatArray) -> FloatArray:
     return np.asarray(inverse @ (columns @ target))
 
 
+def of_products(products: FloatArray) -> FloatArray | None:
+    """The same coefficients (P,) by the products (P + 1, P + 1) of columns and target, the last.
+
+    None where they would not be exact.
+    """
+    inverse = _inverse_of(products[:-1, :-1].tolist())
+    return None if inverse is None else np.asarray(inverse @ products[:-1, -1])
+
+
 def independent(columns: FloatArray) -> bool:
     """Whether none of the columns (P, K) follows from the others."""
     known = _inverse(columns) is not None
@@ -33,7 +42,10 @@ def variances(columns: FloatArray) -> FloatArray:
 
 def _inverse(columns: FloatArray) -> FloatArray | None:
     """The inverse (P, P) of the products of columns (P, K); None where it would not be exact."""
-    products = (columns @ columns.T).tolist()
+    return _inverse_of((columns @ columns.T).tolist())
+
+
+def _inverse_of(products: list[list[float]]) -> FloatArray | None:
     squares = [products[place][place] for place in range(len(products))]
     if not SQUARES[0] < min(squares) <= max(squares) < SQUARES[1]:
         return None

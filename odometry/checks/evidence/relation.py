@@ -5,7 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.evidence.least_squares import independent, least_squares, variances
+from odometry.checks.evidence.least_squares import (
+    independent,
+    least_squares,
+    of_products,
+    variances,
+)
 
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
@@ -76,15 +81,14 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     if len(of_known) < LEAST_WINDOWS or not independent(known):
         return None
     coefficients, kept = _least_absolute(known, of_known), np.ones(len(of_known), dtype=np.bool_)
-    for _ in range(ROUNDS):
+    for done in range(ROUNDS):
         sizes = np.abs(of_known - coefficients @ known)
-        scale = 1.4826 * np.median(sizes)
-        before, kept = kept, sizes <= CUTOFF * scale + 1e-12
+        before, kept = kept, sizes <= CUTOFF * 1.4826 * _median(sizes) + 1e-12
         if kept.sum() < LEAST_WINDOWS or not independent(known[:, kept]):
             kept = before
-        coefficients = least_squares(known[:, kept], of_known[kept])
-        if (kept == before).all():
+        if done and (kept == before).all():
             break
+        coefficients = least_squares(known[:, kept], of_known[kept])
     left = of_known - coefficients @ known
     fitted, of_fitted = known[:, kept], of_known[kept]
     variance = np.sum(left[kept] ** 2) / max(len(of_fitted) - len(columns), 1)
@@ -132,12 +136,25 @@ def _distinct(columns: FloatArray, target: FloatArray) -> bool:
 
 def _least_absolute(columns: FloatArray, target: FloatArray) -> FloatArray:
     """A start that a third of outliers does not move: least absolute residuals, by weights."""
+    both = np.vstack([columns, target])
     coefficients = least_squares(columns, target)
     for _ in range(ROUNDS):
         away = np.abs(target - coefficients @ columns)
-        weights = 1 / np.sqrt(np.maximum(away, 1e-3 * away.sum() / len(away) + 1e-12))
-        coefficients = least_squares(columns * weights, target * weights)
+        weights = 1 / np.maximum(away, 1e-3 * away.sum() / len(away) + 1e-12)
+        found = of_products((both * weights) @ both.T)
+        if found is None:
+            root = np.sqrt(weights)
+            found = least_squares(columns * root, target * root)
+        coefficients = found
     return coefficients
+
+
+def _median(sizes: FloatArray) -> float:
+    """`np.median` of finite sizes (K,), in a quarter of its time."""
+    half, odd = divmod(len(sizes), 2)
+    if odd:
+        return float(np.partition(sizes, half)[half])
+    return float(np.partition(sizes, (half - 1, half))[half - 1 : half + 1].sum()) / 2
 
 
 def _correlation(a: FloatArray, b: FloatArray) -> float:

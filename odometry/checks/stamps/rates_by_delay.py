@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Signal
 from odometry.checks.stamps.timing import pose_period_s
@@ -64,6 +64,27 @@ def left_by_growing(
     every, step_s = np.arange(squares.shape[1]), float(delays_s[1] - delays_s[0])
     rows = (np.round((of - delays_s[0]) / step_s).astype(int) for of in lags_s)
     return min(float(np.sum(squares[np.clip(of, 0, len(delays_s) - 1), every])) for of in rows)
+
+
+def left_by_any_growing(squares: FloatArray, growths: Iterable[IntArray]) -> float:
+    """The least of squares (D, N) that a lag leaves which is any of the D delays and grows.
+
+    Parameters
+    ----------
+    squares : FloatArray, shape (D, N)
+    growths : iterable of IntArray, shape (N,)
+        By how many rows each possible lag is farther on at each stamp; beyond the last delay it
+        stays.
+    """
+    rows, columns = squares.shape
+    summed = np.pad(np.cumsum(squares, axis=1), ((0, 0), (1, 0)))
+    least = np.inf
+    for growth in growths:  # the sums of stretches in which it is the same
+        begins = np.append(0, np.flatnonzero(np.diff(growth)) + 1)
+        stretches = np.diff(summed[:, np.append(begins, columns)], axis=1)
+        at = np.clip(np.arange(rows)[:, None] + growth[begins], 0, rows - 1)
+        least = min(least, float(np.take_along_axis(stretches, at, axis=0).sum(axis=1).min()))
+    return least
 
 
 def moment_of(stamps_s: FloatArray, share: float) -> float:

@@ -9,7 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import stamps_moved
 from odometry.checks.stamps.late_stamps import CLEARLY
-from odometry.checks.stamps.rates_by_delay import left_by_growing, moment_of, two_delays
+from odometry.checks.stamps.rates_by_delay import left_by_any_growing, moment_of, two_delays
 from odometry.checks.stamps.set_clocks import left_by_delays
 from odometry.checks.stamps.timing import headings_by_sensor
 
@@ -99,9 +99,8 @@ def _step(evidence: Evidence, pair: tuple[str, str]) -> Step | None:
     one = float(squares.sum(axis=1).min())
     if left > HALF * one or left > (1 - HELD) * whole or abs(after_s - before_s) < LEAST_S:
         return None
-    along = np.linspace(-0.5, 0.5, len(at_s))
-    growing_s = (middle_s + of_s * along for of_s in GROWTHS_S for middle_s in DELAYS_S)
-    grown = left_by_growing(squares, DELAYS_S, growing_s)
-    if left > CLEARLY * grown:
+    along = np.linspace(-0.5, 0.5, len(at_s)) / (DELAYS_S[1] - DELAYS_S[0])
+    growths = (np.round(of_s * along).astype(int) for of_s in GROWTHS_S)
+    if left > CLEARLY * left_by_any_growing(squares, growths):
         return None
     return Step(pair, moment_of(at_s, share), before_s, after_s)

@@ -2,7 +2,12 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import independent, least_squares, variances
+from odometry.checks.evidence.least_squares import (
+    independent,
+    least_squares,
+    of_products,
+    variances,
+)
 from odometry.checks.evidence.once import once
 from odometry.checks.unexplained import disagreement
 from tests.odometry.checks.test_other_robots import winding
@@ -15,6 +20,8 @@ def test_products_give_what_a_decomposition_gives(rng, count):
     target = rng.standard_normal(60)
     expected = np.linalg.lstsq(columns.T, target, rcond=None)[0]
     np.testing.assert_allclose(least_squares(columns, target), expected, rtol=1e-10)
+    both = np.vstack([columns, target])
+    np.testing.assert_allclose(of_products(both @ both.T), expected, rtol=1e-10)
     inverse = np.linalg.pinv(columns @ columns.T)
     np.testing.assert_allclose(variances(columns), np.diag(inverse), rtol=1e-8)
     assert independent(columns)
@@ -28,6 +35,8 @@ def test_columns_that_nearly_follow_from_others_are_decomposed(rng, off, more):
     target = rng.standard_normal(60)
     expected = np.linalg.lstsq(columns.T, target, rcond=None)[0]
     np.testing.assert_array_equal(least_squares(columns, target), expected)
+    both = np.vstack([columns, target])
+    assert of_products(both @ both.T) is None
     assert independent(columns) == (off > 0)
 
 

@@ -11,6 +11,7 @@ from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.finding import Level
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
+from odometry.checks.stamps.rates_by_delay import left_by_any_growing
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from tests.odometry.checks.faulty import pose_stamps, put
@@ -84,3 +85,14 @@ def test_a_lag_with_a_step_is_not_that_of_commands(seed):
     (found,) = check_recording(ahead(0.25 * (at_s > 60))).at(Level.WARNING)
     assert found.name == "sensors_disagree"
     assert "as by a clock that was set or stamps that jump" in found.seen
+
+
+def test_a_lag_that_grows_is_sought_as_by_trying_each_one(rng):
+    squares = rng.random((9, 40))
+    growths = np.round(np.outer([-5, -1.3, 0, 2.2, 30], np.linspace(-0.5, 0.5, 40))).astype(int)
+    tried = (
+        squares[np.clip(first + growth, 0, 8), np.arange(40)].sum()
+        for first in range(9)
+        for growth in growths
+    )
+    assert left_by_any_growing(squares, growths) == pytest.approx(min(tried), rel=1e-12)
