@@ -123,14 +123,18 @@ def save_figure(
         FigureCanvasAgg(figure)
         draw(figure)
         with atomic_write(file) as part:
-            figure.savefig(
-                part,
-                dpi=dpi,
-                metadata={"Software": None, "Source": source},
-                bbox_inches=_whole(figure),
-                pil_kwargs={"compress_level": _COMPRESSION},
-            )
+            _write_png(part, figure, source)
     return file
+
+
+def _write_png(file: Path, figure: Figure, source: str | None) -> None:
+    figure.savefig(
+        file,
+        dpi=figure.dpi,
+        metadata={"Software": None, "Source": source},
+        bbox_inches=_whole(figure),
+        pil_kwargs={"compress_level": _COMPRESSION},
+    )
 
 
 def _whole(figure: Figure) -> Bbox | None:

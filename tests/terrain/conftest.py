@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from odometry.report import figure
 from terrain.classification.classifier import TerrainClassifier
 from terrain.main_job import run_odometry
 from terrain.results import write_results
@@ -161,6 +163,19 @@ def drive_curves(folder, pose=True, truth=False, stamps_s=None):
     if truth:
         write_csv(folder / "truth.csv", "t,x,y,yaw", rows)
     return folder
+
+
+@pytest.fixture
+def undrawn_figures(request, monkeypatch):
+    """Figures are made, and written as one grey pixel: drawing them takes a quarter of a command.
+
+    Tests of `report` draw them, and those with the mark `drawn`.
+    """
+    if request.node.get_closest_marker("drawn"):
+        return
+    pixel = Figure(figsize=(0.01, 0.01), dpi=100)
+    write = figure._write_png
+    monkeypatch.setattr(figure, "_write_png", lambda file, _, source: write(file, pixel, source))
 
 
 @pytest.fixture(scope="session")

@@ -39,8 +39,8 @@ def test_a_wrong_pitch_is_named_with_the_one_that_fits(drive, camera):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("times", [0.5, 1.2])
-def test_a_wrong_focal_length_is_named_with_its_factor(drive, camera, times):
+def test_a_wrong_focal_length_is_named_with_its_factor(drive, camera):
+    times = 0.5  # images of twice the size
     cause = causes(drive, scaled(camera, times, times))["camera_lens"]
     assert cause.startswith("The focal length is")
     assert float(re.findall(r"[0-9.]+", cause)[0]) == pytest.approx(1 / times, rel=0.02)
