@@ -115,6 +115,7 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         "turns": track.turns_are_off,
         "contradicted": track.contradicted,
         "gain": None if track.gain is None else track.gain.off,
+        "centre": track.centre,
         "headings": track.headings_disagree,
         "blocked": track.blocked,
     }

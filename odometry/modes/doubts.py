@@ -101,6 +101,16 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, off),
             )
         )
+    if track.centre is not None:
+        off = track.centre & sure & undetermined
+        found.append(
+            Doubt(
+                "the robot turns about another point than on the most probable mode for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain, load or set of wheels, and check the poses",
+                _share(followed, off),
+            )
+        )
     if track.scatter is not None and (track.scatter > MOST_SCATTER).any():
         off = track.scatter > MOST_SCATTER
         found.append(

@@ -11,6 +11,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.icr import GUESSED_WIDTHS
+from odometry.modes.held_out_centres import centre_errors
 from odometry.modes.held_out_gains import gain_errors
 from odometry.modes.mode_windows import inside, scenes_by_mode, yaw_rates_by_mode
 from odometry.modes.response import SHORTEST_LAG_S, lagged
@@ -206,7 +207,10 @@ def identify_traction_modes(
     if paper:
         return modes
     found = gain_errors(modes, measured)
-    return modes if found is None else replace(modes, gain_spread=found[0], gain_power=found[1])
+    if found is not None:
+        modes = replace(modes, gain_spread=found[0], gain_power=found[1])
+    off = centre_errors(modes, runs)
+    return modes if off is None else replace(modes, centre_spread=off[0], centre_noise=off[1])
 
 
 def _fastest_m_s(scenes: dict[str, list[DenseWindows]]) -> float:

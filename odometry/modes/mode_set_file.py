@@ -58,7 +58,11 @@ MODE = {
 }
 OPTIONAL_MODE: dict[str, tuple[Key, ...]] = {
     "velocity": (Key("speed_power", (2,), "0 or more"), Key("gain_spread", (), "0 or more")),
-    "traction": (Key("gain_spread", (), "0 or more"),),
+    "traction": (
+        Key("gain_spread", (), "0 or more"),
+        Key("centre_spread", (2,), "0 or more"),
+        Key("centre_noise", (2,), "0 or more"),
+    ),
 }
 KINDS: dict[str, type[VelocityModes] | type[TractionModes]] = {
     "velocity": VelocityModes,

@@ -48,6 +48,8 @@ class ModeTrack:
         Where the most probable mode was contradicted not long ago; without it nowhere.
     gain : GainCheck or None
         Where the robot turns more or less than the most probable mode does; without it nowhere.
+    centre : (N,) or None
+        Where the robot turns about another point than the most probable mode; else nowhere.
     scatter : (N,) or None
         How many times as far poses scatter as in the runs of identification; NaN: undetermined.
     felt : (N, M) or None
@@ -83,6 +85,7 @@ class ModeTrack:
     headings_disagree: BoolArray | None = None
     contradicted: BoolArray | None = None
     gain: GainCheck | None = None
+    centre: BoolArray | None = None
     scatter: FloatArray | None = None
     felt: FloatArray | None = None
     blocked: BoolArray | None = None

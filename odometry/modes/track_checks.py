@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.between_modes import between_modes
+from odometry.modes.centre_check import centre_check
 from odometry.modes.gain_check import gain_check
 from odometry.modes.innovation_test import (
     LONG_CLIP,
@@ -39,8 +40,8 @@ def contradictions(
     """Fields of `ModeTrack`: what speaks against the most probable mode, as its filters allow.
 
     Of modes that measure velocities: equal modes, turns, travel, turns between two modes and
-    headings at odds. Of those that measure poses: turns between two modes, gains that are off,
-    where one was contradicted not long ago, and how far poses scatter.
+    headings at odds. Of those that measure poses: turns between two modes, gains and turning
+    centres that are off, where one was contradicted not long ago, and how far poses scatter.
     """
     modes = mode_set.modes
     believed = biases_rad_s, left.independent, config
@@ -49,6 +50,7 @@ def contradictions(
             "between": between_modes(signals, modes, *believed, stay_s=STAY_S),
             "contradicted": contradicted_lately(left, config),
             "gain": gain_check(signals, modes, left.leading, biases_rad_s, config),
+            "centre": centre_check(signals, modes, left.leading, config),
             "scatter": pose_scatter(left),
         }
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)

@@ -61,6 +61,10 @@ class TractionModes:
         Of the error of a mode's yaw rate gain on drives that it was not identified from: standard
         deviation from turn to turn as a share, and what adds to its square by the information of a
         window [rad^2/s] (`held_out_gains`). None of sets of versions before, and without gyroscope.
+    centre_spread, centre_noise : (M, 2) or None
+        Of the error of a mode's turning centre, to the left and ahead, on drives that it was not
+        identified from: standard deviation [m], and what adds to its square by the variance that a
+        window of poses leaves (`held_out_centres`). None of sets of versions before.
     """
 
     names: tuple[str, ...]
@@ -73,6 +77,8 @@ class TractionModes:
     fastest_m_s: float = np.inf
     gain_spread: FloatArray | None = None
     gain_power: float = np.inf
+    centre_spread: FloatArray | None = None
+    centre_noise: FloatArray | None = None
 
     kind = "traction"
     errors_last_s = 0.0

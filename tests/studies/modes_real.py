@@ -39,6 +39,7 @@ TESTS = (
     "headings_disagree",
     "contradicted",
     "gain",
+    "centre",
 )
 KINDS: Mapping[str, Mapping[str, bool]] = {
     "model and noise of each ground": {},

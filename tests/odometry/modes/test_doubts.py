@@ -49,6 +49,7 @@ def cases():
         ({"turns_are_off": turns}, UNDETERMINED, "turns by more or by less", "identify a mode"),
         ({"blocked": turns}, UNDETERMINED, "the robot does not turn between", "look whether"),
         ({"gain": gain}, UNDETERMINED, "turns by 5 % more than on a, which", "identify a mode"),
+        ({"centre": turns}, UNDETERMINED, "turns about another point", "identify a mode"),
         ({"contradicted": turns}, UNDETERMINED, "the motion contradicted the", "identify a mode"),
         ({"headings_disagree": turns}, UNDETERMINED, "headings turn apart by", "check the gyro"),
         ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),
