@@ -17,11 +17,6 @@ def no_report(monkeypatch):
     monkeypatch.setattr("terrain.report.page.write_report", lambda *_, **__: None)
 
 
-@pytest.fixture(autouse=True)
-def _undrawn(undrawn_figures):
-    """What commands say and write beside their figures."""
-
-
 CHECKED = {}
 
 
