@@ -31,6 +31,8 @@ MOST_PARTS = 6  # the longest ones are compared
 TRIED_ALONE = frozenset(
     {
         "pose_late",
+        "yaw_late",
+        "positions_late",
         "clocks_apart",
         "clock_set",
         "gyroscope_late",

@@ -97,6 +97,8 @@ CATALOGUE: dict[str, str] = {
     "slip_episodes": "treads that drive on while the poses stay",
     "far_sensor": "a sensor far from the centre",
     "pose_late": "poses late or early, by stamps or a filter",
+    "yaw_late": "yaw late or early, beside positions that are on time",
+    "positions_late": "positions late or early, beside a yaw that is on time",
     "clocks_apart": "clocks that run apart",
     "poses_unrelated": "poses of another recording",
     "poses_are_wheel_odometry": "poses computed from these treads",

@@ -65,16 +65,18 @@ def gyroscope_times(run: Run, factor: float) -> Mend:
     return times("imu", factor, *axes)
 
 
-def sooner(names: tuple[str, ...], seconds: float) -> Mend:
-    """Columns of odometry.csv as they were so much later, at the stamps as they are."""
+def sooner(names: tuple[str, ...], seconds: float, table: str = "odometry") -> Mend:
+    """Columns of a table as they were so much later, at the stamps as they are."""
 
     def mend(run: Run) -> Run:
-        t = run.odometry.stamps_s
+        t = getattr(run, table).stamps_s
 
         def at_once(values: FloatArray) -> FloatArray:
-            return np.asarray(np.interp(t + seconds, t, values))
+            known = np.isfinite(values)
+            later = np.interp(t + seconds, t[known], values[known])
+            return np.where(known, later, np.nan)
 
-        return in_turn(*(changed("odometry", name, at_once) for name in names))(run)
+        return in_turn(*(changed(table, name, at_once) for name in names))(run)
 
     return mend
 

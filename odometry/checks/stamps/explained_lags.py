@@ -11,9 +11,10 @@ from odometry.checks.evidence.motion import WINDOW_S
 from odometry.checks.evidence.relation import Relation
 from odometry.checks.findings.finding import Finding, disagreement
 from odometry.checks.stamps.held_treads import held_treads
-from odometry.checks.stamps.late_positions import apart_from_yaw
+from odometry.checks.stamps.late_positions import apart_from_yaw, lag_beside_yaw
 from odometry.checks.stamps.late_stamps import one_side_alone
 from odometry.checks.stamps.one_delay import answers, is_one_delay
+from odometry.checks.stamps.parts_of_poses import late_part
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.timing import drifting, found_in, lags_of, pose_period_s
 
@@ -57,7 +58,9 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
             alone = "; or those of yaw alone: the positions do not decide" * (apart is None)
             yield from _judged(evidence, replace(finding, cause=finding.cause + alone), lags)
     if apart:
-        yield disagreement(apart)
+        speed = lag_beside_yaw(evidence, lags.get(("pose", "treads")))
+        late = late_part(evidence, speed, lags) if speed else None
+        yield late or disagreement(apart)
 
 
 def _judged(

@@ -64,13 +64,8 @@ def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:
 
     Empty where both are of one time, None where it is not known.
     """
-    if of_yaw is None or not evidence.yaw_measured or of_yaw.together < TOGETHER:
-        return None
-    lost_s = float(np.sum(np.diff(odometry_gaps(evidence.run).spans_s)))
-    if lost_s > MOST_LOST * float(np.ptp(evidence.stamps_s)):
-        return None
-    lag = _speed_lag(evidence, max(MOST_APART_S, abs(of_yaw.seconds) + 2 * LEAST_APART_S))
-    if lag is None or lag.together < TOGETHER or lag.pieces < LEAST_PIECES:
+    lag = lag_beside_yaw(evidence, of_yaw)
+    if lag is None or of_yaw is None:
         return None
     sigma_s = float(np.hypot(lag.sigma_s, of_yaw.sigma_s))
     apart_s = lag.seconds - of_yaw.seconds
@@ -81,6 +76,18 @@ def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:
         f"their speed is {lag.seconds:+.2f} s "
         f"late against that of the treads, and their turns are {of_yaw.seconds:+.2f} s"
     )
+
+
+def lag_beside_yaw(evidence: Evidence, of_yaw: Lag | None) -> Lag | None:
+    """The lag of positions behind the treads where yaw has one, too; None where it is not sure."""
+    if of_yaw is None or not evidence.yaw_measured or of_yaw.together < TOGETHER:
+        return None
+    lost_s = float(np.sum(np.diff(odometry_gaps(evidence.run).spans_s)))
+    if lost_s > MOST_LOST * float(np.ptp(evidence.stamps_s)):
+        return None
+    lag = _speed_lag(evidence, max(MOST_APART_S, abs(of_yaw.seconds) + 2 * LEAST_APART_S))
+    sure = lag is not None and lag.together >= TOGETHER and lag.pieces >= LEAST_PIECES
+    return lag if sure else None
 
 
 def _speed_lag(evidence: Evidence, most_s: float) -> Lag | None:

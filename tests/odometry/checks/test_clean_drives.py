@@ -1,6 +1,7 @@
 """Drives without a fault that once had a finding: lobes of a figure eight, a steep slope."""
 
 import numpy as np
+import pytest
 
 from odometry.checks.evidence.constancy import uneven_map
 from odometry.checks.evidence.evidence import Evidence
@@ -48,3 +49,22 @@ def test_sliding_down_a_slope_is_no_fault_and_up_it_is():
     assert warnings(sliding()) == []
     assert "whatever the treads do" in only(sliding(downhill=-1.0)).seen
     assert "slides down a slope" in only(sliding(tilt=False)).seen
+
+
+def lanes(seed, rows=4000):
+    """Straight lines, three in twenty of them backwards, with a sharp turn between two."""
+    rng, speed, turn, first = np.random.default_rng(seed), np.zeros(rows), np.zeros(rows), 0
+    while first < rows:
+        straight, turning = int(rng.integers(40, 160)), int(rng.integers(20, 60))
+        speed[first : first + straight] = rng.uniform(0.4, 1.2) * (1 if rng.random() < 0.85 else -1)
+        first += straight
+        speed[first : first + turning] = rng.uniform(0.0, 0.6)
+        turn[first : first + turning] = rng.uniform(0.3, 1.0) * rng.choice([-1, 1])
+        first += turning
+    smooth = np.ones(8) / 8
+    return drive(*(np.convolve(of, smooth, "same") for of in (speed, turn)), seed=seed)
+
+
+@pytest.mark.parametrize("seed", [5, 16])
+def test_backing_up_on_straight_lines_gives_the_gyroscope_no_other_scale(seed):
+    assert check_recording(lanes(seed)).at(Level.WARNING) == ()

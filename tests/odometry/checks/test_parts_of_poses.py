@@ -1,0 +1,84 @@
+"""Positions or yaw that are late alone, and what only looks like it."""
+
+import numpy as np
+import pytest
+
+from odometry.checks.findings.finding import Level
+from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import put, treads
+from tests.odometry.checks.test_confirmed_causes import turning_all_round
+from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+
+
+def driven(seed=0):
+    """Speeds and turns that change all the time, so that both have a delay."""
+    rng = np.random.default_rng(seed)
+    speed, turn = (
+        np.convolve(rng.standard_normal(4400), np.hanning(60), "same")[:4000] for _ in range(2)
+    )
+    return drive(0.9 + 0.06 * speed, 0.08 * turn, seed=seed)
+
+
+def late(run, names, seconds):
+    def of(name):
+        values = np.unwrap(run.pose[name]) if name == "yaw" else run.pose[name]
+        return np.interp(run.pose["t"] - seconds, run.pose["t"], values)
+
+    return put(run, "pose", **{name: of(name) for name in names})
+
+
+def ahead(run, metres):
+    yaw = run.pose["yaw"]
+    x, y = (run.pose[n] + metres * f(yaw) for n, f in (("x", np.cos), ("y", np.sin)))
+    return put(run, "pose", x=x, y=y)
+
+
+def warned(run):
+    return check_recording(run).at(Level.WARNING)
+
+
+@pytest.mark.parametrize("seconds", [0.7, -0.4])
+@pytest.mark.parametrize(
+    ("names", "named"), [(("yaw",), "yaw_late"), (("x", "y"), "positions_late")]
+)
+def test_the_part_of_a_pose_that_is_late_is_named_with_its_delay(names, named, seconds):
+    (found,) = warned(late(driven(), names, seconds))
+    assert found.name == named
+    assert f"{'late' if seconds > 0 else 'early'} and its" in found.cause
+    assert float(found.remedy.split("subtract ")[1].split()[0]) == pytest.approx(seconds, abs=0.1)
+
+
+def test_positions_of_an_antenna_ahead_are_late_as_well():
+    (found,) = warned(late(ahead(driven(), 0.2), ("x", "y"), 0.7))
+    assert found.name == "positions_late"
+
+
+@pytest.mark.parametrize("run", [driven(), ahead(driven(1), 0.4), turning_all_round()])
+def test_poses_of_one_time_are_not_parted(run):
+    assert not {"yaw_late", "positions_late"} & {found.name for found in warned(run)}
+
+
+@pytest.mark.parametrize("of", ["along", "turning"])
+@pytest.mark.parametrize("seconds", [0.5, -0.5])
+def test_treads_of_two_times_are_no_late_part(of, seconds):
+    """As a robot that follows its treads late in one of both: positions go where yaw points."""
+    run = driven()
+
+    def moved(values):
+        return np.interp(run.odometry["t"] - seconds, run.odometry["t"], values)
+
+    def change(left, right):
+        along, turning = (left + right) / 2, (right - left) / 2
+        along, turning = (moved(along), turning) if of == "along" else (along, moved(turning))
+        return along - turning, along + turning
+
+    names = {found.name for found in warned(treads(run, change))}
+    assert names
+    assert not {"yaw_late", "positions_late"} & names
+
+
+@pytest.mark.parametrize("names", [("yaw",), ("x", "y")])
+def test_without_a_gyroscope_nothing_decides(names):
+    named = [found.name for found in warned(without_gyroscope(late(driven(), names, 0.5)))]
+    assert named
+    assert not {"yaw_late", "positions_late"} & set(named)
