@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.course import Course
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.noise_scale import NoiseScale
+from odometry.estimation.other_places import Doubt
 from odometry.estimation.sensor_watch import SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
 from odometry.models.icr import icr_twist
@@ -94,6 +95,7 @@ class Estimate:
         x, y [m], yaw [rad] in the reference frame; y_left, y_right, x_icr [m] in the robot
         frame; bias of the gyroscope [rad/s]; slip factors alpha_left, alpha_right.
     covariance : (9, 9)
+        It covers all places where the robot may be.
     tread_speeds_m_s : (2,)
         Measured tread speeds in force from this stamp on.
     terrain : str
@@ -127,6 +129,8 @@ class Estimate:
         What is remembered of the sensors; None where they are not watched.
     events : tuple of FilterEvent
         What the filter noticed at this stamp.
+    doubt : Doubt or None
+        Where else the robot may be, while poses and treads disagree.
 
     Examples
     --------
@@ -157,11 +161,17 @@ class Estimate:
     course: Course | None = None
     watch: SensorWatch | None = None
     events: tuple[FilterEvent, ...] = ()
+    doubt: Doubt | None = None
 
     @property
     def rejected_in_row(self) -> int:
         """How many poses failed the gate since the last that passed, to the filter's patience."""
         return len(self.refused)
+
+    @property
+    def certain(self) -> "Estimate":
+        """With the covariance with which the filter goes on, see `doubt`."""
+        return self if self.doubt is None else replace(self, covariance=self.doubt.covariance)
 
     @property
     def alphas(self) -> FloatArray:

@@ -12,6 +12,7 @@ from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_start import started_anew
 from odometry.estimation.measured_updates import Seen
 from odometry.estimation.measurement import Gaussian, Place, turned_by_treads
+from odometry.estimation.other_places import SHIFTED_POSES, left
 from odometry.estimation.prediction import Predicted
 from odometry.estimation.rest_watch import RestWatch
 from odometry.estimation.sensor_watch import Events, SensorWatch, with_bias
@@ -25,6 +26,7 @@ def followed_at_rest(
     stamp_s: float,
     after: Seen,
     *,
+    yaw_rate_rad_s: float,
     pose_covariance: FloatArray,
     lever_m: Place,
 ) -> tuple[Seen, RestWatch | None]:
@@ -43,6 +45,8 @@ def followed_at_rest(
         Of the end.
     after : Seen
         State estimate there.
+    yaw_rate_rad_s : float
+        Of the gyroscope over the step; NaN where there is none.
     pose_covariance : (3, 3)
         Of a measured pose.
     lever_m : (x, y)
@@ -53,9 +57,13 @@ def followed_at_rest(
         if watch is None:
             return after, None
         return after._replace(events=(*after.events, *rest_watch.ended(watch, stamp_s))), None
-    if watch is None:
+    came_back = any(event.kind == SHIFTED_POSES for event in after.events)
+    if watch is None or came_back:
         before = estimate.mean, estimate.covariance
         watch = RestWatch(estimate.stamp_s, before, estimate.scale)
+    if math.isfinite(yaw_rate_rad_s):
+        turn_rad = (yaw_rate_rad_s - watch.before[0][GYRO_BIAS]) * (stamp_s - estimate.stamp_s)
+        watch = watch._replace(turned_rad=watch.turned_rad + float(turn_rad))
     if pose is None or after.course is not None:
         return after, watch
     scaled = pose_covariance * watch.scale.pose
@@ -65,10 +73,17 @@ def followed_at_rest(
     then_mean, then_covariance = watch.before
     mean, covariance = after.mean.copy(), np.zeros_like(after.covariance)
     mean[3:] = then_mean[3:]
+    # steps of a carried antenna that is off the centre look like turns: the gyroscope knows better
+    mean[YAW] = wrap_one(float(then_mean[YAW]) + watch.turned_rad)
     covariance[:3, :3], covariance[3:, 3:] = after.covariance[:3, :3], then_covariance[3:, 3:]
+    drift = then_covariance[GYRO_BIAS, GYRO_BIAS] * (stamp_s - watch.since_s) ** 2
+    covariance[YAW, YAW] = then_covariance[YAW, YAW] + drift
     anew = started_anew((mean, covariance), pose, scaled, lever_m)
+    others = after.others
+    if not others or others[-1].since_s < watch.since_s:
+        others = left(others, watch.before, anew, stamp_s)
     return after._replace(
-        mean=anew[0], covariance=anew[1], refused=(), recent=(), scale=watch.scale
+        others=others, mean=anew[0], covariance=anew[1], refused=(), recent=(), scale=watch.scale
     ), watch
 
 

@@ -90,7 +90,12 @@ def agree(refused: Sequence[FloatArray], pose_covariance: FloatArray) -> bool:
 
 
 def started_anew(
-    belief: Gaussian, pose: FloatArray, pose_covariance: FloatArray, lever_m: Place
+    belief: Gaussian,
+    pose: FloatArray,
+    pose_covariance: FloatArray,
+    lever_m: Place,
+    *,
+    lost_yaw_rad: float = LOST_YAW_RAD,
 ) -> Gaussian:
     """The belief at a measured pose (3,), parts of which may be NaN; the rest stays."""
     mean, covariance = belief[0].copy(), np.zeros((STATES, STATES))
@@ -99,7 +104,7 @@ def started_anew(
     if math.isfinite(pose[YAW]):
         mean[YAW] = pose[YAW]
     else:
-        covariance[YAW, YAW] = belief[1][YAW, YAW] + LOST_YAW_RAD**2
+        covariance[YAW, YAW] = belief[1][YAW, YAW] + lost_yaw_rad**2
     if np.isfinite(pose[:2]).all():
         mean[:2] = pose[:2] - (reference_point(mean, lever_m) - mean[:2])
     else:
@@ -119,7 +124,8 @@ def new_start_event(refused: Sequence[FloatArray], stamp_s: float) -> FilterEven
         stamp_s,
         f"{len(refused)} poses in a row were refused and agreed with each other, "
         f"{' and '.join(parts)} from the filter: it started again there (the poses jumped, or "
-        "treads and gyroscope lost their way)",
+        "treads and gyroscope lost their way; until poses show which, the covariance covers both "
+        "places)",
         (float(len(refused)),),
     )
 

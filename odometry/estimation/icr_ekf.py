@@ -12,9 +12,10 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction, added_from, require_corrections
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_changes import bias_followed, followed_at_rest
-from odometry.estimation.filter_start import first_belief
+from odometry.estimation.filter_start import agree, first_belief
 from odometry.estimation.measured_updates import PoseUpdate, VelocityUpdate
 from odometry.estimation.measurement import Place
+from odometry.estimation.other_places import AGREEING, doubted
 from odometry.estimation.prediction import Prediction
 from odometry.estimation.rest_watch import stand
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
@@ -143,6 +144,7 @@ class IcrEkf:
                 "expected frames in time order (odometry.estimation.in_order puts late ones in "
                 "their place)"
             )
+        estimate = estimate.certain
         predicted = self._prediction.at(frame, estimate)
         belief, yaw_rate = predicted.belief, predicted.yaw_rate_rad_s
         recent, learned, crossing = estimate.recent, estimate.learned, estimate.crossing
@@ -162,16 +164,23 @@ class IcrEkf:
                 predicted.pose,
                 frame.stamp_s,
                 after,
+                yaw_rate_rad_s=yaw_rate,
                 pose_covariance=self._pose_update.covariance,
                 lever_m=self._lever_m,
             )
             predicted = predicted._replace(watch=watch._replace(rest=rest))
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
+        covariance, doubt = belief[1], None
+        if self.config.watch_sensors and (after.others or after.refused):
+            pose_covariance, refused = self._pose_update.covariance, after.refused
+            is_apart = len(refused) >= AGREEING and agree(refused, pose_covariance)
+            last = refused[-1] if is_apart else None
+            covariance, doubt = doubted(belief, after.others, last, pose_covariance, frame.stamp_s)
         added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=belief[0],
-            covariance=belief[1],
+            covariance=covariance,
             tread_speeds_m_s=predicted.speeds_m_s,
             terrain=terrain,
             yaw_rate_rad_s=frame.yaw_rate_rad_s,
@@ -188,6 +197,7 @@ class IcrEkf:
             course=after.course,
             watch=watch,
             events=predicted.events + after.events + of_bias,
+            doubt=doubt,
         )
 
 

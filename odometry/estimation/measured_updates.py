@@ -21,6 +21,7 @@ from odometry.estimation.measurement import (
     velocity_measurement,
 )
 from odometry.estimation.noise_scale import NoiseScale, adapted, velocity_variances
+from odometry.estimation.other_places import Others, left, return_event, returned, watched
 from odometry.estimation.transition import YAW
 from odometry.frames import Frame
 
@@ -37,6 +38,7 @@ class Seen(NamedTuple):
     scale: NoiseScale
     course: Course | None
     events: tuple[FilterEvent, ...] = ()
+    others: Others = ()
 
 
 class PoseUpdate:
@@ -96,13 +98,28 @@ class PoseUpdate:
                 return self._nothing(estimate, found.belief, recent)._replace(
                     course=found.course, events=found.events
                 )
-            measured = pose_measurement(belief[0], pose, scaled, self.lever_m)
+            others, came_back = _others(estimate), None
+            if others:
+                others, came_back = watched(others, belief[0], pose, scaled, self.lever_m)
+            there = belief if came_back is None else returned(belief, came_back)
+            measured = pose_measurement(there[0], pose, scaled, self.lever_m)
+            if came_back is not None:
+                at_pose = started_anew(there, pose, scaled, self.lever_m, lost_yaw_rad=0.0)
+                event = return_event(belief, came_back, frame.stamp_s)
+                innovation = Innovation(measured.residual, 0.0, True)
+                scale = estimate.scale
+                return Seen(*at_pose, innovation, (), recent, False, scale, None, (event,), others)
             if len(measured.residual):
-                return self._taken(estimate, belief, measured, frame, recent)
+                after = self._taken(estimate, belief, measured, frame, recent)
+                if after.events:
+                    others = left(others, belief, (after.mean, after.covariance), frame.stamp_s)
+                return after._replace(others=others)
         return self._nothing(estimate, belief, recent)
 
     def _nothing(self, estimate: Estimate, belief: Gaussian, recent: tuple[float, ...]) -> Seen:
-        return Seen(*belief, None, estimate.refused, recent, False, estimate.scale, estimate.course)
+        refused, scale, course = estimate.refused, estimate.scale, estimate.course
+        others = _others(estimate)
+        return Seen(*belief, None, refused, recent, False, scale, course, others=others)
 
     def _taken(
         self,
@@ -149,6 +166,10 @@ class PoseUpdate:
         covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
         covariance[OF_TERRAIN, OF_TERRAIN] = self._reset_variances
         return belief[0], covariance
+
+
+def _others(estimate: Estimate) -> Others:
+    return () if estimate.doubt is None else estimate.doubt.others
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,8 @@ class RestWatch(NamedTuple):
         Where it stood before it was found moved; None where it was not.
     moved_since_s, moved_m : float
         Stamp at which it was found moved (NaN: it was not), and how far from where it stood.
+    turned_rad : float
+        By the gyroscope since `since_s`, less its bias then.
     """
 
     since_s: float
@@ -50,6 +52,7 @@ class RestWatch(NamedTuple):
     stood_m: FloatArray | None = None
     moved_since_s: float = math.nan
     moved_m: float = 0.0
+    turned_rad: float = 0.0
 
 
 def stand(speeds_m_s: FloatArray) -> bool:

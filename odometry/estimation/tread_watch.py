@@ -7,6 +7,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.noise_scale import width_sigma_m
+from odometry.estimation.rest_watch import STILL_M_S
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, GYRO_BIAS, Y_LEFT, Y_RIGHT
 from odometry.frames import Frame
 
@@ -119,12 +120,13 @@ def contradicted(
 
     An encoder is stuck where its reading stays exactly the same while the other tread and the
     gyroscope say, through the estimated ICRs, that it moves otherwise by more than treads slip.
+    Where both stand, the robot is turned from outside.
     """
     left_s, right_s = watch.same_since_s
     if watch.stuck >= 0:
         return watch
     tread = 0 if left_s < right_s else 1
-    if left_s == right_s or stamp_s - min(left_s, right_s) < SAME_S:
+    if left_s == right_s or stamp_s - min(left_s, right_s) < SAME_S or _stand(watch):
         return _agreeing(watch)
     implied = implied_speed(watch.recorded_m_s, tread, belief, yaw_rate)
     fastest = max(abs(watch.recorded_m_s[0]), abs(watch.recorded_m_s[1]))
@@ -136,6 +138,11 @@ def contradicted(
     if stamp_s - watch.off_since_s < CONTRADICTED_S:
         return watch
     return watch._replace(stuck=tread, off_since_s=watch.same_since_s[tread])
+
+
+def _stand(watch: TreadWatch) -> bool:
+    left, right = watch.recorded_m_s
+    return max(abs(left), abs(right)) <= STILL_M_S
 
 
 def _agreeing(watch: TreadWatch) -> TreadWatch:
