@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
+from odometry.checks.stamps.late_positions import sure_lag
 from odometry.checks.stamps.timing import (
     CERTAIN,
     TOGETHER,
@@ -36,8 +37,9 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
     config : IcrEkfConfig
         `pose_delay_s` is the delay of the stamps. With 0, and with `watch_sensors`, it
         is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
-        yaw rate with that of the poses (`odometry.checks.stamps.timing`), and used only where that
-        is certain.
+        yaw rate with that of the poses (`odometry.checks.stamps.timing`), of positions without yaw
+        by their speed and that of treads that turn in step with it, and used only where that is
+        certain.
 
     Returns
     -------
@@ -52,9 +54,13 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         return _moved(run, pose, given_s, f"by {given_s:.3f} s, as given")
     searched = config.watch_sensors and not config.causal
     delay_s = _certain_delay_s(run) if searched else None
-    if delay_s is None:
+    if delay_s is not None:
+        return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
+    of_positions = sure_lag(Evidence(run)) if searched and run.yaw_rate is not None else None
+    if of_positions is None:
         return run, ()
-    return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
+    text = f"by {of_positions.seconds:.3f} s against the treads, which turn as the gyroscope does"
+    return _moved(run, pose, of_positions.seconds, text)
 
 
 def _certain_delay_s(run: Run) -> float | None:

@@ -10,6 +10,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.pose_delay import without_pose_delay
 from odometry.run import Robot, Run
 from odometry.table import Table
+from tests.odometry.checks.faulty import put
+from tests.odometry.checks.test_other_robots import without_gyroscope
+from tests.odometry.checks.test_positions_alone import starts_and_stops
 from tests.odometry.estimation.sensor_drives import WIDTH, drive
 
 
@@ -74,3 +77,14 @@ def test_a_delay_that_is_given_is_taken():
     assert "as given" in event.text
     alone = replace(given, pose=None)
     assert without_pose_delay(alone, IcrEkfConfig(pose_delay_s=0.1)) == (alone, ())
+
+
+@pytest.mark.parametrize(("late_s", "is_undone"), [(0.3, True), (0.8, True), (0.1, False)])
+def test_a_delay_of_positions_is_undone_where_treads_and_gyroscope_are_in_step(late_s, is_undone):
+    run = starts_and_stops(late_s, 5.0, 0.02)
+    assert without_pose_delay(without_gyroscope(run), IcrEkfConfig())[1] == ()
+    late_gyroscope = put(run, "odometry", gyro_z=np.roll(run.odometry["gyro_z"], 6))
+    assert without_pose_delay(late_gyroscope, IcrEkfConfig())[1] == ()
+    _, events = without_pose_delay(run, IcrEkfConfig())
+    assert [event.kind for event in events] == ["late_poses"] * is_undone
+    assert [event.values[0] for event in events] == pytest.approx([late_s] * is_undone, abs=0.06)

@@ -26,11 +26,11 @@ LEAST_TURNS = 20  # turns
 CORRELATED = 0.85  # with gyroscope or treads: else noise, slip or a sensor far ahead prevails
 
 
-def course_turns(motion: Motion, of: Integrals) -> tuple[Motion, FloatArray]:
+def course_turns(motion: Motion, of: Integrals, width_m: float) -> tuple[Motion, FloatArray]:
     """Motion between the middles of neighbouring windows (K), and the turn (K,) of the course.
 
-    Forwards and backwards are one direction. NaN throughout where the turns of the course go with
-    those of no other sensor: then noise prevails, and nothing is to be said of them.
+    Forwards and backwards are one direction, so that a sharp turn would count as one to the other
+    side: NaN. All are NaN where they go with the turns of no other sensor: then noise prevails.
     """
     distance = motion.distance_m
     known = np.isfinite(distance)
@@ -44,13 +44,14 @@ def course_turns(motion: Motion, of: Integrals) -> tuple[Motion, FloatArray]:
     begin_s, end_s = middle_s[rows], middle_s[rows + 1]
     turn = np.diff(motion.course_rad)[rows]
     turn = (turn + np.pi / 2) % np.pi - np.pi / 2
-    turn = np.where(np.abs(turn) > MOST_RAD, np.nan, turn)
     left, right, gyroscope = (
         integral(end_s) - integral(begin_s)
         for integral in (of.left_m, of.right_m, of.gyroscope_rad)
     )
     nothing = np.full((len(rows), 2), np.nan)
     between = Motion(begin_s, end_s, left, right, gyroscope, nothing, nothing)
+    is_sharp = between.least_turn_rad(width_m) > np.pi / 2
+    turn = np.where(is_sharp | (np.abs(turn) > MOST_RAD), np.nan, turn)
     return between, np.where(_correlated(between, turn), turn, np.nan)
 
 
@@ -208,12 +209,13 @@ class Evidence(CleanedRecording):
     @cached_property
     def _course_turns(self) -> tuple[Motion, FloatArray]:
         """Over longer windows where noise prevails in shorter ones."""
-        found = course_turns(self.motion, self.integrals)
+        width_m = self.run.robot.track_width
+        found = course_turns(self.motion, self.integrals, width_m)
         for window_s in COURSE_WINDOWS_S:
             if np.isfinite(found[1]).any():
                 break
             longer = motion_between(self.run, self.integrals, self.poses_used, window_s)
-            found = course_turns(self._without_left_out(longer), self.integrals)
+            found = course_turns(self._without_left_out(longer), self.integrals, width_m)
         return found
 
     @cached_property

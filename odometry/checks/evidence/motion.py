@@ -16,6 +16,8 @@ LONGEST = (
     3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
 )
 
+WIDTH = 1.8  # track widths, as which a robot turns where no gyroscope says more
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -69,6 +71,14 @@ class Motion:
     def distance_m(self) -> FloatArray:
         """Distance (K,) between the measured positions."""
         return np.asarray(np.hypot(self.moved_m[:, 0], self.moved_m[:, 1]))
+
+    def least_turn_rad(self, width_m: float) -> FloatArray:
+        """Turn (K,) without its sign, the smaller one by gyroscope and treads.
+
+        A unit may be wrong. Where there is no gyroscope, treads turn the robot less than they say.
+        """
+        by_treads, by_gyroscope = np.abs(self.difference_m) / width_m, np.abs(self.gyroscope_rad)
+        return np.fmin(np.where(np.isnan(by_gyroscope), by_treads / WIDTH, by_gyroscope), by_treads)
 
     @property
     def turn_rad(self) -> FloatArray:

@@ -12,6 +12,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag, Rate, lag_of_rates
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import changed
+from odometry.checks.stamps.timing import lag_of_treads
 from odometry.windows.gaps import odometry_gaps
 
 WIDTH = 1.8  # track widths, as which a robot turns where no gyroscope says more
@@ -23,6 +24,10 @@ SPINNING = (
     0.6  # m for each metre of the treads, below which treads spin, and the robot follows late
 )
 TOGETHER = 0.7  # share of the pieces that have one lag
+# Where the gyroscope turns at once as the treads do, the robot follows them: positions of 15 real
+# recordings that go as far as their treads are then at most 0.1 s late or early.
+IN_STEP_S, LEAST_IN_STEP_S = 0.1, 0.2
+CORRELATED, GOING = 0.9, 0.8  # of the speeds; m for each metre of the treads
 # Between positions and yaw; real recordings whose treads hold have at most 0.22 s with four pieces
 # or more, one of three pieces 0.4.
 LEAST_APART_S, MOST_APART_S, LEAST_PIECES = 0.3, 1.5, 4
@@ -34,7 +39,9 @@ def late_positions(evidence: Evidence) -> Iterator[Finding]:
     lag = position_lag(evidence)
     if lag is None or lag.together < TOGETHER:
         return
-    if abs(lag.seconds) < max(LEAST_LAG_S, CERTAIN * lag.sigma_s):
+    in_step = is_in_step(evidence, lag)
+    least_s = LEAST_IN_STEP_S if in_step else LEAST_LAG_S
+    if abs(lag.seconds) < max(least_s, CERTAIN * lag.sigma_s):
         return
     word, opposite = ("late", "early") if lag.seconds > 0 else ("early", "late")
     follows = (
@@ -47,7 +54,8 @@ def late_positions(evidence: Evidence) -> Iterator[Finding]:
         f"the speed between positions is {abs(lag.seconds):.2f} +- {lag.sigma_s:.2f} s {word} "
         f"against that of the treads (correlation {lag.correlation:.2f})",
         f"Stamps of pose.csv are {word} (a delay of the receiver or of its transport), or those of "
-        f"odometry.csv are {opposite}{follows * (lag.seconds > 0)}: without yaw these cannot be "
+        f"odometry.csv{' and of the gyroscope' * in_step} are {opposite}"
+        f"{follows * (lag.seconds > 0)}: without yaw these cannot be "
         "distinguished",
         f"If it is the poses, subtract {lag.seconds:+.2f} s from their stamps",
         mend=changed("pose", "t", lambda stamps_s: stamps_s - lag.seconds),
@@ -57,6 +65,25 @@ def late_positions(evidence: Evidence) -> Iterator[Finding]:
 def position_lag(evidence: Evidence) -> Lag | None:
     """The lag of positions behind the treads; None with yaw, and where it cannot be estimated."""
     return None if evidence.yaw_measured else _speed_lag(evidence, MOST_LAG_S)
+
+
+def sure_lag(evidence: Evidence) -> Lag | None:
+    """The lag of positions that are surely late; None where they are not, or it is not known."""
+    lag = position_lag(evidence)
+    if lag is None or not is_in_step(evidence, lag):
+        return None
+    least_s = max(LEAST_IN_STEP_S, CERTAIN * lag.sigma_s)
+    return lag if lag.seconds > least_s and lag.together >= TOGETHER else None
+
+
+def is_in_step(evidence: Evidence, lag: Lag) -> bool:
+    """Whether the robot turns and goes as its treads do, so that it does not follow them late."""
+    if lag.pieces < LEAST_PIECES or lag.correlation < CORRELATED:
+        return False
+    if (evidence.metres_per_metre or 0.0) < GOING:
+        return False
+    of_treads = lag_of_treads(evidence)
+    return of_treads is not None and abs(of_treads.seconds) < IN_STEP_S
 
 
 def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:

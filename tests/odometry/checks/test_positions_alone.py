@@ -129,11 +129,27 @@ def test_turns_of_the_course_are_those_of_the_gyroscope():
     assert known.mean() > 0.8
     assert np.median(np.abs(turn - by_gyroscope)[known]) < 0.05
     there_and_back = replace(evidence.motion, moved_m=-evidence.motion.moved_m)
-    for motion in (evidence.motion, there_and_back):
-        same = course_turns(motion, evidence.integrals)[1]
-        assert same == pytest.approx(
-            course_turns(evidence.motion, evidence.integrals)[1], nan_ok=True
-        )
+    found, same = (
+        course_turns(motion, evidence.integrals, evidence.run.robot.track_width)[1]
+        for motion in (evidence.motion, there_and_back)
+    )
+    assert same == pytest.approx(found, nan_ok=True)
+
+
+@pytest.mark.parametrize("hz", [10.0, 2.5])
+@pytest.mark.parametrize("with_gyroscope", [True, False])
+def test_u_turns_on_the_spot_are_no_turns_to_the_other_side(with_gyroscope, hz):
+    """Straight lanes with turns by 155 degrees between them, forwards and back as one course."""
+    rows = []
+    for lane in range(12):
+        side = 1.0 if lane % 4 < 2 else -1.0
+        rows += [(0.8, 0.0)] * 220 + [(0.1, 0.9 * side)] * 60 + [(0.5, 0.0)] * 20
+    speed, rate = (
+        np.convolve(column, np.full(15, 1 / 15), "same") for column in np.transpose(rows)
+    )
+    run = without_yaw(drive(speed, rate, sigma_m=0.01))
+    run = replace(run, pose=run.pose.rows(slice(None, None, round(10.0 / hz))))
+    assert warnings(run if with_gyroscope else without_gyroscope(run)) == []
 
 
 def test_turns_that_go_with_nothing_are_not_used():
@@ -163,6 +179,16 @@ def test_late_positions_are_named_by_their_speed(delay_s, word, gyroscope):
     assert (found.name, found.seen.split(" s ")[1].split()[0]) == ("pose_late", word)
     assert float(found.remedy.split("subtract ")[1].split()[0]) == pytest.approx(delay_s, abs=0.2)
     assert ("or the robot itself follows later" in found.cause) == (delay_s > 0)
+
+
+def test_a_short_delay_is_named_where_the_robot_turns_as_its_treads_do():
+    run = starts_and_stops(0.3, 5.0, 0.02)
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "pose_late"
+    assert float(found.remedy.split("subtract ")[1].split()[0]) == pytest.approx(0.3, abs=0.05)
+    assert check_recording(without_gyroscope(run)).at(Level.WARNING) == ()
+    late_gyroscope = put(run, "odometry", gyro_z=np.roll(run.odometry["gyro_z"], 6))
+    assert "pose_late" not in warnings(late_gyroscope)
 
 
 @pytest.mark.parametrize("hz", [1.0, 5.0])
