@@ -29,6 +29,7 @@ KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one l
 WORTH_OF_UNLIKE = 0.3
 # `Likeness.beyond` of drives over held-out photographs of the own camera is 1.5 at most
 FAR = 1.5
+OTHER_SIZE = "the image is not of the camera's size"
 LOST_DETAILS = "the image lost details of the terrain: fog, a wet lens, another focus"
 
 
@@ -104,6 +105,9 @@ class ImageLabeller:
     region : RegionConfig
     folder : Path, optional
         What names of image files are relative to.
+    first_must_fit : bool
+        Whether a first image of another size is an error: then the camera is wrong. A robot that
+        drives goes on without a label.
 
     Attributes
     ----------
@@ -119,6 +123,8 @@ class ImageLabeller:
         classifier: Classifier,
         region: RegionConfig,
         folder: Path | None = None,
+        *,
+        first_must_fit: bool = True,
     ) -> None:
         self.camera = camera
         self.classifier = classifier
@@ -126,7 +132,7 @@ class ImageLabeller:
         self._robot = robot
         self._region = region
         self._folder = folder
-        self._has_answered = False
+        self._may_differ = not first_must_fit
         self._before: ByteImage | None = None
         self._still, self._details = StillWatch(camera), DetailsWatch(camera)
 
@@ -141,7 +147,7 @@ class ImageLabeller:
         Raises
         ------
         CameraError
-            If the first image to be classified is not of the camera's size.
+            If the first image to be classified is not of the camera's size, and must be.
         """
         if frame.image is None:
             raise ValueError(f"the frame at {frame.stamp_s} s has no image")
@@ -168,7 +174,7 @@ class ImageLabeller:
         views = [self._view(image, r) for r in region.rectangles]
         answers = self.classifier.classify(views)
         self.seen.add(views)
-        self._has_answered = True
+        self._may_differ = True
         likeness = self.seen.likeness
         answers = [answer.unless_doubtful(likeness) for answer in answers]
         for of in (likeness, self.seen.latest):
@@ -189,7 +195,7 @@ class ImageLabeller:
         if self._repeats(image):
             return "the image is the one before"
         if not self._is_of_size(image, name):
-            return "the image is not of the camera's size"
+            return OTHER_SIZE
         if self.classifier.colour_ and image.ndim != 3:
             return "the image is grey, the model was trained with colour"
         return image
@@ -211,7 +217,7 @@ class ImageLabeller:
         try:
             self.camera.check_size(image)
         except CameraError as error:
-            if self._has_answered:
+            if self._may_differ:
                 return False
             raise CameraError(f"{name}: {error}; see [camera] image_size in run.toml") from error
         return True

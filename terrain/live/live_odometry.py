@@ -18,6 +18,7 @@ from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness import Likeness
 from terrain.config import Config
+from terrain.image_labels.image_labeller import OTHER_SIZE
 from terrain.live.live_feel import LiveFelt
 from terrain.live.live_source import live_feel, live_source
 from terrain.live.live_step import LiveStep
@@ -125,6 +126,8 @@ class LiveOdometry:
         self._name_notes = name_notes(initial, classifier, parameters)
         self._gaps = GapsSoFar()
         self._lost_s, self._lost_until_s = 0.0, 0.0
+        self._of_other_size = 0
+        self._image_size = (0, 0) if camera is None else camera.image_size
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
 
@@ -156,8 +159,8 @@ class LiveOdometry:
     def notes(self) -> tuple[str, ...]:
         """What to know before the answers are used; some can be said after several images only.
 
-        Terrains that the parameter set lacks, images unlike the training photographs, `feel_note`,
-        and time without tread speeds.
+        Terrains that the parameter set lacks, images unlike the training photographs or of another
+        size than the camera's, `feel_note`, and time without tread speeds.
         """
         likeness = None if self.likeness is None else self.likeness.note
         lost = (
@@ -165,11 +168,14 @@ class LiveOdometry:
             f"time until {self._lost_until_s:.2f} s: messages were lost, or the clock was set. "
             "Where the robot went meanwhile is not known, and the odometer is off by it"
         )
-        return tuple(
-            filter(
-                None, (*self._name_notes, likeness, self.feel_note, lost if self._lost_s else "")
-            )
+        width, height = self._image_size
+        odd = (
+            f"{self._of_other_size} image(s) are not of the camera's size, {width} x {height} "
+            "pixels, and have no label: see image_size of [camera]"
         )
+        of_images = odd if self._of_other_size else ""
+        said = likeness, of_images, self.feel_note, lost if self._lost_s else ""
+        return tuple(filter(None, (*self._name_notes, *said)))
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.
@@ -178,8 +184,6 @@ class LiveOdometry:
         ------
         EstimationError
             If the frame is older than the one before; nothing is changed then.
-        CameraError
-            If the first image to be classified is not of the camera's size.
         """
         if self._estimate is not None and not frame.stamp_s >= self._estimate.stamp_s:
             raise EstimationError(
@@ -204,6 +208,7 @@ class LiveOdometry:
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:
             seen = self._watcher.image_labels[-1] if frame.image is not None else None
+            self._of_other_size += seen is not None and seen.reason == OTHER_SIZE
             event = self._watcher.event
         if self._felt is None:
             return LiveStep(self._estimate, *odometer, terrain, seen, event)

@@ -78,7 +78,9 @@ class TerrainWatcher:
         self.in_force: list[str] = []
         self.events: list[SwitchEvent] = []
         self.classifier = classifier
-        self._labeller = ImageLabeller(robot, camera, classifier, region, folder)
+        self._labeller = ImageLabeller(
+            robot, camera, classifier, region, folder, first_must_fit=keep is None
+        )
         self.seen = self._labeller.seen
         self._track = DistanceTrack(classifier)
         self._keep = keep
