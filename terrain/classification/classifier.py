@@ -16,7 +16,7 @@ from terrain.classification.learning import LearningClassifier
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
 from terrain.classification.patches import LabelledPatches
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained_on import TrainedOn, check_labels, holds_images
+from terrain.classification.trained_on import TrainedOn, as_images, check_labels, holds_images
 from terrain.classification.validation import Samples
 
 
@@ -184,6 +184,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         altered = copies or LabelledPatches()
         strange: list[ByteImage] = []
         if holds_images(X):
+            X = as_images(X)
             labels, photos = _labels_and_groups(len(X), y, groups)
             strange = self._strange_patches(X, photos)
             images = [*X, *altered.images]

@@ -20,7 +20,7 @@ from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours
 from terrain.classification.other_things import THINGS
 from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
-from terrain.classification.trained_on import holds_images
+from terrain.classification.trained_on import as_images, holds_images
 from terrain.errors import ImageError
 
 
@@ -78,11 +78,12 @@ class TrainedClassifier(ModelFile):
         Raises
         ------
         ImageError
-            If an image is smaller than a patch, or grey where the classifier needs colour.
+            If an image is smaller than a patch, grey where the classifier needs colour, or no
+            image. Images of Pillow are taken as arrays.
         """
         return [
             self.checked(image, self.classify_features(self.patch_features(image)))
-            for image in images
+            for image in as_images(images)
         ]
 
     def checked(self, image: ByteImage, answer: Classification) -> Classification:
@@ -195,7 +196,9 @@ class TrainedClassifier(ModelFile):
     ) -> tuple[FloatArray, FloatArray]:
         check_is_fitted(self)
         if holds_images(X):
-            answers = (self._of_patches(self.patch_features(image)) for image in X)
+            if not len(X):
+                raise ImageError("no images to name, expected one or more")
+            answers = (self._of_patches(self.patch_features(image)) for image in as_images(X))
             votes, distances = zip(*answers, strict=True)
             return np.stack(votes), np.array(distances)
         return self._of_features(validate_data(self, X, reset=False))

@@ -11,10 +11,11 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.thumbnails import THUMBNAIL_PX, looks_like_one
-from terrain.errors import PatchError
+from terrain.errors import ImageError, PatchError
 
 # What answers are called that name no terrain, and terrain that no source knows (`new_terrain`)
 RESERVED = re.compile(rf"{UNKNOWN}[\s_-]*\d*", re.IGNORECASE)
+PLAIN_MODES = ("1", "L", "RGB", "I;16")  # of images of Pillow
 SUM_DIGITS = 16  # of SHA-256: chance matches among a million images are of the order of 1e-8
 
 
@@ -83,6 +84,27 @@ def holds_images(X: object) -> TypeGuard[Sequence[ByteImage]]:
     if hasattr(X, "shape"):
         return len(X.shape) in {3, 4}
     return isinstance(X, Sequence) and (not X or np.ndim(X[0]) in {2, 3})
+
+
+def as_images(images: Iterable[Any]) -> list[ByteImage]:
+    """Images as arrays; those of Pillow in colours of other kinds become RGB.
+
+    Raises
+    ------
+    ImageError
+        If one is no image.
+    """
+    found = []
+    for place, image in enumerate(images):
+        is_plain = getattr(image, "mode", "L") in PLAIN_MODES
+        array = np.asarray(image if is_plain else image.convert("RGB"))
+        if array.ndim not in {2, 3}:
+            raise ImageError(
+                f"image {place} is {type(image).__name__} of shape {array.shape}, expected an "
+                "array (rows, columns) or (rows, columns, 3); terrain.read_image reads a file"
+            )
+        found.append(array)
+    return found
 
 
 def common_size(images: Sequence[ByteImage]) -> int:

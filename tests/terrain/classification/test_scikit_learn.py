@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sklearn
+from PIL import Image
 from sklearn.base import clone
 from sklearn.exceptions import NotFittedError
 from sklearn.model_selection import GridSearchCV, GroupKFold, cross_val_score
@@ -45,6 +46,19 @@ def test_an_array_of_images_is_as_good_as_a_list_and_a_larger_one_is_cut(whole, 
     np.testing.assert_allclose(
         classifier.predict_proba([wide, images[2]]), [stacked[:2].mean(axis=0), stacked[2]]
     )
+
+
+def test_images_of_pillow_are_arrays_and_what_is_no_image_is_said(whole, classifier):
+    arrays = [np.ascontiguousarray(image) for image in whole[0][:4]]
+    pillows = [Image.fromarray(image) for image in arrays]
+    assert classifier.predict(pillows).tolist() == classifier.predict(arrays).tolist()
+    coloured = [Image.fromarray(np.stack([image] * 3, axis=-1)).convert("P") for image in arrays]
+    assert classifier.classify(coloured)[0].label
+    for none in ([], np.empty((0, 40, 40), np.uint8)):
+        with pytest.raises(ImageError, match="no images to name"):
+            classifier.predict(none)
+    with pytest.raises(ImageError, match=r"image 1 is str .*read_image reads a file"):
+        classifier.classify([arrays[0], "1.png"])
 
 
 def test_without_groups_each_patch_is_of_its_own(whole):
