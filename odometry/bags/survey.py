@@ -29,6 +29,7 @@ class Tally:
         self.sample: Any = None
         self.offsets_s: list[float] = []
         self.ranges: Ranges = {}
+        self.clock_back_s, self._latest = 0.0, (0, 0)
         self.problem = ""
         self.frames: dict[str, None] = {}
         self.joints: dict[str, None] = {}
@@ -59,6 +60,10 @@ class Tally:
         stamp_ns = header_ns(content)
         if stamp_ns:
             self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
+            stamped_ns, received_ns = self._latest
+            if message.received_ns > received_ns:
+                self.clock_back_s = max(self.clock_back_s, (stamped_ns - stamp_ns) / 1e9)
+                self._latest = stamp_ns, message.received_ns
         if self.sample is None or self._tells_more(content):
             image = self.connection.message_type in IMAGES
             self.sample = _without_pixels(content) if image else content
@@ -88,6 +93,7 @@ class Tally:
             self.problem if self.sample is None else "",
             tuple(self.frames),
             tuple(self.joints),
+            self.clock_back_s,
         )
 
 

@@ -113,6 +113,8 @@ class Topic:
         The first message that could be decoded, images without their pixels.
     header_offset_s : float or None
         Median of header stamp minus time of reception; None where there is no header stamp.
+    clock_back_s : float
+        By how much header stamps go back at most while messages come in.
     ranges : Mapping
         Smallest and largest value of the motion fields, see `motion_ranges`.
     problem : str
@@ -134,6 +136,7 @@ class Topic:
     problem: str = ""
     frames: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
+    clock_back_s: float = 0.0
 
     @property
     def duration_s(self) -> float:

@@ -196,6 +196,13 @@ def clock_of(used: list[Topic], requested: str) -> tuple[bool, list[str]]:
     offsets = [one.header_offset_s for one in used if one.header_offset_s is not None]
     if not offsets:
         return False, []
+    back = max(used, key=lambda one: one.clock_back_s)
+    if back.clock_back_s > SAME_CLOCK_S:
+        return False, [
+            f"times: those of reception, as header stamps of {back.name} go back by "
+            f"{back.clock_back_s:.3g} s: their clock was set, or began anew (--time header takes "
+            "the stamps all the same, and drops what goes back)"
+        ]
     unstamped = [one.name for one in used if one.header_offset_s is None]
     spread = max([*offsets, *(0.0 for _ in unstamped)]) - min([*offsets, *(0.0 for _ in unstamped)])
     if spread <= SAME_CLOCK_S:

@@ -176,6 +176,9 @@ def test_a_clock_that_is_set_back_is_said(tmp_path):
     again, said = imported(tmp_path / "again", path, time="log")
     assert len(again.odometry) == 4000
     assert said.losses == ()
+    chosen, said = imported(tmp_path / "chosen", path)
+    assert len(chosen.odometry) == 4000
+    assert any("stamps of /joint_states go back by 99" in note for note in said.notes)
 
 
 def test_stamps_of_unlike_clocks_give_way_to_the_times_of_reception(tmp_path):
