@@ -10,6 +10,10 @@ MOST_SHIFT_S = 3.5
 LEAST_SHIFT_S = 0.15
 LEAST_WIDTH_S = 0.5  # over which turn rates are taken
 CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
+# Pieces of shorter runs are half as long, as if they took twice the time: of 272 stretches of 19
+# and 24 s of real recordings one is then called late or early that is not.
+SHORT_S, TIMES = 31.0, 2.0
+MOST_SHORT_S, LEAST_SHORT_S, CORRELATED_SHORT = 1.0, 0.2, 0.9
 
 
 def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
@@ -22,22 +26,27 @@ def late_by_s(other: Trajectory, odometer: Trajectory) -> float | None:
     end_s = min(each.stamps_s[-1] for each in (other, odometer))
     period_s = max(float(np.median(np.diff(each.stamps_s))) for each in (other, odometer))
     width_s = max(LEAST_WIDTH_S, 2 * period_s)
-    span_s = (begin_s + MOST_SHIFT_S, end_s - MOST_SHIFT_S)
+    times, most_s, least_s, correlated = 1.0, MOST_SHIFT_S, LEAST_SHIFT_S, CORRELATED
+    if end_s - begin_s < SHORT_S:
+        times, most_s, least_s, correlated = TIMES, MOST_SHORT_S, LEAST_SHORT_S, CORRELATED_SHORT
+    span_s = (begin_s + most_s, end_s - most_s)
     if span_s[1] - span_s[0] < 3 * width_s:
         return None
-    lag = lag_between(_heading(other), _heading(odometer), span_s, width_s, MOST_SHIFT_S)
-    if lag is None or lag.correlation < CORRELATED or lag.together < TOGETHER:
+    headings = _heading(other, times), _heading(odometer, times)
+    slower_s = (times * span_s[0], times * span_s[1])
+    lag = lag_between(*headings, slower_s, times * width_s, times * most_s)
+    if lag is None or lag.correlation < correlated or lag.together < TOGETHER:
         return None
-    least_s = max(LEAST_SHIFT_S, period_s, CERTAIN * lag.sigma_s)
-    return lag.seconds if abs(lag.seconds) > least_s else None
+    least_s = max(least_s, period_s, CERTAIN * lag.sigma_s / times)
+    return lag.seconds / times if abs(lag.seconds) / times > least_s else None
 
 
-def _heading(trajectory: Trajectory) -> Signal:
-    """Heading [rad] at stamps, whole turns counted; NaN outside."""
+def _heading(trajectory: Trajectory, times: float) -> Signal:
+    """Heading [rad] at so many times its stamps, whole turns counted; NaN outside."""
     yaw = np.unwrap(trajectory.poses[:, 2])
 
     def at(stamps_s: FloatArray) -> FloatArray:
-        return np.interp(stamps_s, trajectory.stamps_s, yaw, left=np.nan, right=np.nan)
+        return np.interp(stamps_s / times, trajectory.stamps_s, yaw, left=np.nan, right=np.nan)
 
     return at
 

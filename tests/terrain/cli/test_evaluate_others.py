@@ -11,9 +11,10 @@ from odometry.geometry import se3
 from odometry.io.trajectory_files import read_trajectory, to_optical, write_trajectory
 from odometry.io.tum import write_spatial_tum
 from odometry.run import Run
-from odometry.trajectory import SpatialTrajectory
+from odometry.trajectory import SpatialTrajectory, Trajectory
 from terrain.cli.evaluate import evaluate
 from terrain.main_job import run_odometry
+from terrain.other_odometry.other_stamps import late_by_s
 from terrain.results import write_results
 
 
@@ -171,6 +172,18 @@ def test_a_shift_of_its_clock_is_suspected_where_it_is_plain(winding, tmp_path, 
     ]
     assert way in note
     assert "Nothing is shifted" in note
+
+
+@pytest.mark.parametrize("shift_s", [0.4, 0.0])
+def test_a_shift_of_a_short_run_is_suspected(shift_s):
+    at_s = np.arange(0, 19, 0.05)
+    rates = sum(np.sin(at_s / length_s + length_s) for length_s in (0.5, 0.9, 1.7))
+    yaw = 0.05 * np.cumsum(rates)
+    noisy = yaw + np.random.default_rng(0).normal(0, 0.005, len(yaw))
+    flat = np.zeros_like(yaw)
+    ours = Trajectory(at_s, np.column_stack([flat, flat, yaw]))
+    late_s = late_by_s(Trajectory(at_s + shift_s, np.column_stack([flat, flat, noisy])), ours)
+    assert late_s == (pytest.approx(shift_s, abs=0.05) if shift_s else None)
 
 
 def test_no_shift_is_suspected_of_noise_or_of_a_straight_drive(winding, tmp_path):
