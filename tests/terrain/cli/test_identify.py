@@ -9,7 +9,7 @@ import pytest
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.parameters import read_parameters
 from tests.terrain.cli.identify_calls import SHORT
-from tests.terrain.conftest import drive_curves
+from tests.terrain.written_runs import drive_curves
 
 TRUTH = {"y_left": 0.26, "y_right": -0.24, "x_icr": 0.03, "alpha_left": 1.0, "alpha_right": 1.0}
 

@@ -1,0 +1,49 @@
+"""What a live run says beside its estimates."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.frames import Frame
+from odometry.parameters import ParameterSet
+from odometry.run import Robot, Run
+from terrain.camera.camera import Camera
+from terrain.images import read_image
+from terrain.live.live_odometry import LiveOdometry
+from tests.terrain.live.test_live_odometry import SET
+
+
+def test_terrains_that_the_set_lacks_are_noted_before_the_first_frame(across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live = LiveOdometry(run.robot, camera=camera, model=classifier, parameters=SET)
+    assert live.notes == ()
+    other = ParameterSet({"Boards": SET.terrains["boards"]})
+    live = LiveOdometry(run.robot, camera=camera, model=classifier, parameters=other)
+    (note,) = live.notes
+    assert note.startswith("the model knows 'boards', 'gravel', the parameter set does not")
+    assert note.endswith("'Boards' there is 'boards' here: give both one name")
+
+
+def test_images_of_another_size_have_no_label_and_one_note(across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live = LiveOdometry(run.robot, camera=camera, model=classifier)
+    halves = [replace(f, image=f.image and read_image(f.image)[::2, ::2]) for f in run.frames()]
+    labels = [s.image_label for s in map(live.step, halves) if s and s.image_label]
+    assert not any(label.label for label in labels)
+    (note,) = live.notes
+    odd = sum(label.reason == "the image is not of the camera's size" for label in labels)
+    assert note.startswith(f"{odd} image(s) are not of the camera's size")
+    assert odd > 3
+
+
+def test_time_without_tread_speeds_is_noted():
+    live = LiveOdometry(Robot(0.5))
+    stamps_s = [*np.arange(0, 3, 0.1), *np.arange(9, 11, 0.1)]
+    for row, stamp_s in enumerate(stamps_s):
+        assert live.notes == () or stamp_s > 9
+        live.step(Frame(stamp_s, np.array([0.5, 0.5]), row, None, None))
+    (note,) = live.notes
+    assert note.startswith("no tread speeds came for 6.1 s in all while a tread turned")
+    assert "until 9.00 s" in note
