@@ -11,7 +11,7 @@ from odometry.checks.recording import check_recording
 from odometry.checks.unexplained.beyond_slip import beyond_slip
 from tests.odometry.checks.faulty import pose_stamps, positions, put, treads
 from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import drive, winding
+from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
 
 UNKNOWN = ["sensors_disagree"]
 
@@ -35,8 +35,10 @@ def late(run, seconds, *names):
 
 @pytest.mark.parametrize("names", [("yaw",), ("x", "y")], ids=["yaw", "positions"])
 def test_yaw_or_positions_alone_are_not_late_poses(names):
-    assert warnings(late(to_and_fro(), 0.8, *names)) == UNKNOWN
-    assert "are not of one time" in seen(late(to_and_fro(), 0.8, *names))
+    run = late(to_and_fro(), 0.8, *names)
+    assert warnings(run) == ["yaw_late" if names == ("yaw",) else "positions_late"]
+    assert warnings(without_gyroscope(run)) == UNKNOWN
+    assert "are not of one time" in seen(without_gyroscope(run))
 
 
 def test_all_of_the_poses_late_are_late_poses():

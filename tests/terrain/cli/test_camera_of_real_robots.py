@@ -62,6 +62,7 @@ def nearest_m(table):
     return x + float(np.interp(0.0, -(y - z / down * right), z / down))
 
 
+@pytest.mark.drawn
 def test_a_level_camera(verb, robot, tmp_path):
     """It sees no terrain below itself, and says from where on it does."""
     run, frames = robot
