@@ -5,10 +5,15 @@ from typing import Self
 
 from odometry.run import UNKNOWN
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.noticed_alterations import may_pass_unnoticed
 
 # Probability of being right: a wrong name costs more than twice what a right one brings.
 TRUSTED = 0.7
 DOUBTFUL = f"unlike the training photographs, and not right with a probability of {TRUSTED} or more"
+UNNOTICED = (
+    "another camera would not be noticed, and the name is not right with a probability of "
+    f"{TRUSTED} or more"
+)
 # Where images are so far beyond training (`Likeness.beyond`), no name is worth much: of a model
 # whose answers were all right where they were held out, which teaches it no such probability; and
 # of one that learned it, whose altered photographs lie nearer.
@@ -60,28 +65,37 @@ class Classification:
     reason: str = ""
     probability_right: float | None = None
 
-    def unless_doubtful(self, likeness: Likeness | None) -> Self:
+    def unless_doubtful(
+        self, likeness: Likeness | None, noticed_share: float | None = None
+    ) -> Self:
         """The answer, ``unknown`` where its name is not right with `TRUSTED` or more.
 
         No name is left where the images together, of which this is one, are far beyond training.
-        Nothing is asked where they are like the training photographs: as many right names would be
-        lost as wrong ones.
+        Nothing is asked where they are like the training photographs, as many right names would be
+        lost as wrong ones; but where images of another camera would be like them as well, it is.
 
         Parameters
         ----------
         likeness : Likeness or None
             Of these images.
+        noticed_share : float, optional
+            Of the model, see `TerrainClassifier`; None where the camera is that of training.
         """
-        if likeness is None or not likeness.is_unlike or self.label == UNKNOWN:
+        if likeness is None or not likeness.images or self.label == UNKNOWN:
             return self
+        if not likeness.is_unlike:
+            return self._if_trusted(UNNOTICED) if may_pass_unnoticed(noticed_share) else self
         learned = self.probability_right is not None
         most = MOST_BEYOND_LEARNED if learned else MOST_BEYOND
         are_many = likeness.images >= FEWEST_IMAGES  # of fewer, one black image decides
         if are_many and likeness.beyond is not None and likeness.beyond > most:
             return replace(self, label=UNKNOWN, reason=TOO_UNLIKE)
+        return self._if_trusted(DOUBTFUL)
+
+    def _if_trusted(self, reason: str) -> Self:
         if self.probability_right is None or self.probability_right >= TRUSTED:
             return self
-        return replace(self, label=UNKNOWN, reason=DOUBTFUL)
+        return replace(self, label=UNKNOWN, reason=reason)
 
     def unless_improbable(self) -> Self:
         """The answer, ``unknown`` where its name is right with less than `PROBABLE`.

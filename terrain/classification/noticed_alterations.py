@@ -61,14 +61,21 @@ def noticed_share(
     return float(np.mean(unlike)) if unlike else None
 
 
+def may_pass_unnoticed(share: float | None) -> bool:
+    """Whether images of another camera may look like training, by a `noticed_share`."""
+    return share is not None and share < LEAST_NOTICED
+
+
 def unnoticed(share: float | None) -> str | None:
     """What a `noticed_share` means for images that look like training; None if that is reliable."""
-    if share is None or share >= LEAST_NOTICED:
+    if share is None or not may_pass_unnoticed(share):
         return None
     return (
         "images of another camera may pass as those of training, whose photographs differ so much "
         f"from each other: made darker, blurred or noisy {100 * share:.0f} % of them are noticed. "
-        "Test the model on labelled images of the camera in use (classify MODEL FOLDER)"
+        "Names that are not surely enough right are unknown, unless --same-camera says that the "
+        "camera is that of training. Test the model on labelled images of the camera in use "
+        "(classify MODEL FOLDER)"
     )
 
 

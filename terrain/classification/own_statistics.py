@@ -15,6 +15,7 @@ from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.trained import Classifier
 
 LEAST = 0.01  # of a deviation in training: a feature that varies less is taken as in training
+TWO_CAMERAS = "own statistics are for another camera than that of training, same camera is not"
 HALF_AT = 50  # patches: with so many the camera's own statistics have half of their weight
 
 
@@ -189,8 +190,12 @@ def used_as(classifier: Classifier, config: ClassifierConfig) -> Classifier:
     Raises
     ------
     ConfigError
-        If a setting does not suit the classifier.
+        If a setting does not suit the classifier, or another one.
     """
+    if config.own_statistics and config.same_camera:
+        raise ConfigError(TWO_CAMERAS)
+    if config.same_camera and isinstance(classifier, TerrainClassifier):
+        return classifier.on_its_camera()
     if not config.own_statistics:
         return classifier
     if not isinstance(classifier, TerrainClassifier):

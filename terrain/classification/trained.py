@@ -167,6 +167,15 @@ class TrainedClassifier(ModelFile):
         """What it learned."""
         return self._neighbours
 
+    def on_its_camera(self) -> Self:
+        """The same classifier for images that are known to be of the camera of training.
+
+        No name of images that look like training is doubted because another camera's would as well.
+        """
+        other = copy(self)
+        other.noticed_share_ = None
+        return other
+
     def with_neighbours(self, neighbours: Neighbours) -> Self:
         """The same classifier with other neighbours in the same space of features."""
         other = copy(self)

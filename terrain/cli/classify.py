@@ -23,7 +23,20 @@ if TYPE_CHECKING:
     help="Standardise features by all IMAGES: for a camera unlike that of training, and images of "
     "several terrains.",
 )
-def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statistics: bool) -> None:
+@click.option(
+    "--same-camera",
+    is_flag=True,
+    help="IMAGES are of the camera of training: keep names that are doubted only because MODEL "
+    "would not notice another camera.",
+)
+def classify(
+    model: Path,
+    images: tuple[Path, ...],
+    *,
+    as_json: bool,
+    own_statistics: bool,
+    same_camera: bool,
+) -> None:
     """Name the terrain of each of IMAGES with MODEL, a file that `train` wrote.
 
     Prints label, confidence, and the distance to the nearest class; a label is unknown, without a
@@ -51,6 +64,10 @@ def classify(model: Path, images: tuple[Path, ...], *, as_json: bool, own_statis
     folders = [path for path in images if path.is_dir()]
     if folders and len(images) > 1:
         raise click.UsageError(f"{folders[0]} is a folder: give one folder alone, or images")
+    if own_statistics and same_camera:
+        raise click.UsageError("--own-statistics is for another camera, --same-camera is not")
+    if same_camera:
+        classifier = classifier.on_its_camera()
     if own_statistics:
         classifier = _standardised(classifier, folders[0] if folders else None, images)
     if folders:
@@ -95,7 +112,9 @@ def _row(
         (answer,) = classifier.classify([read_image(path)])
     except ImageError as error:
         return {"image": str(path), "error": str(error)}
-    return {"image": str(path)} | asdict(answer.unless_doubtful(likeness))
+    return {"image": str(path)} | asdict(
+        answer.unless_doubtful(likeness, classifier.noticed_share_)
+    )
 
 
 def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:

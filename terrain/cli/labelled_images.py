@@ -50,8 +50,15 @@ def print_held_out(
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
     likeness = classifier.likeness(readable([each.photo.path for each in held_out]))
-    held_out = [replace(each, answer=each.answer.unless_doubtful(likeness)) for each in held_out]
-    print_likeness(likeness)
+    share = classifier.noticed_share_
+    answers = [
+        each
+        if each.in_training
+        else replace(each, answer=each.answer.unless_doubtful(likeness, share))
+        for each in answers
+    ]
+    held_out = [each for each in answers if not each.in_training]
+    print_likeness(likeness, share)
     print_no_ground([each.answer.reason for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
     click.echo(

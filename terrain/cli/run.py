@@ -63,6 +63,12 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         help="Standardise features by the images of the run as they arrive: for a camera unlike "
         "that of training which sees several terrains.",
     )
+    @click.option(
+        "--same-camera",
+        is_flag=True,
+        help="The camera is that of training: keep names that are doubted only because the model "
+        "would not notice another one.",
+    )
     @span_options
     @click.option(
         "--detect-jumps", is_flag=True, help="Watch the innovations for jumps of the ICRs."
@@ -81,6 +87,7 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         config: Path | None,
         per_tread: bool,
         own_statistics: bool,
+        same_camera: bool,
         detect_jumps: bool,
         span: "Span",
         **others: Any,
@@ -88,7 +95,6 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         from dataclasses import replace
 
         say_that_it_begins()
-        from terrain.classification.config import ClassifierConfig
         from terrain.config import Config
         from terrain.run_options import RunOptions
         from terrain.run_presets import run_preset
@@ -99,7 +105,11 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
         if per_tread:
             settings = replace(settings, region=replace(settings.region, per_tread=True))
         if own_statistics:
-            settings = replace(settings, classifier=ClassifierConfig(own_statistics=True))
+            settings = replace(
+                settings, classifier=replace(settings.classifier, own_statistics=True)
+            )
+        if same_camera:
+            settings = replace(settings, classifier=replace(settings.classifier, same_camera=True))
         if detect_jumps:
             settings = replace(settings, filter=replace(settings.filter, detect_jumps=True))
         options = RunOptions(

@@ -176,7 +176,8 @@ class ImageLabeller:
         self.seen.add(views)
         self._may_differ = True
         likeness = self.seen.likeness
-        answers = [answer.unless_doubtful(likeness) for answer in answers]
+        share = getattr(self.classifier, "noticed_share_", None)
+        answers = [answer.unless_doubtful(likeness, share) for answer in answers]
         for of in (likeness, self.seen.latest):
             answers = unless_by_light(self.classifier, views, answers, of)
         return answered(frame.stamp_s, name, region, answers)

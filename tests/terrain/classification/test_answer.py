@@ -1,5 +1,6 @@
 """Doubtful names of images unlike the training photographs."""
 
+import json
 from copy import copy
 from dataclasses import replace
 
@@ -8,7 +9,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, Classification
+from terrain.classification.answer import (
+    DOUBTFUL,
+    IMPROBABLE,
+    TOO_UNLIKE,
+    UNNOTICED,
+    Classification,
+)
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.likeness import Likeness
@@ -55,6 +62,25 @@ def test_every_other_answer_stays(answer, likeness):
     assert answer.unless_doubtful(likeness) == answer
 
 
+@pytest.mark.parametrize(
+    ("likeness", "share", "right", "reason"),
+    [
+        (LIKE, 0.4, 0.69, UNNOTICED),
+        (UNLIKE, 0.4, 0.69, DOUBTFUL),
+        (LIKE, 0.4, 0.7, ""),
+        (LIKE, 0.4, None, ""),
+        (LIKE, 0.9, 0.69, ""),
+        (Likeness(0, float("nan"), float("nan"), ()), 0.4, 0.69, ""),
+    ],
+)
+def test_where_another_camera_would_not_be_noticed_a_doubtful_name_is_unknown(
+    likeness, share, right, reason
+):
+    answer = replace(DOUBTED, probability_right=right).unless_doubtful(likeness, share)
+    assert answer.reason == reason
+    assert answer.label == ("unknown" if reason else "mud")
+
+
 @pytest.mark.parametrize(("right", "label"), [(0.24, "unknown"), (0.25, "mud"), (None, "mud")])
 def test_a_name_that_is_wrong_three_times_of_four_is_unknown_whatever_the_images(right, label):
     answer = replace(DOUBTED, probability_right=right).unless_improbable()
@@ -89,3 +115,33 @@ def test_the_verb_doubts_names_of_images_in_another_light(model, tmp_path):
     for reason in (TOO_UNLIKE, DOUBTFUL):
         assert reason not in printed["own"]
     assert TOO_UNLIKE in printed["dark"] or DOUBTFUL in printed["dark"]
+
+
+@pytest.mark.parametrize("as_folder", [False, True])
+def test_the_verb_keeps_names_of_the_same_camera(model, tmp_path, as_folder):
+    unsure = copy(model)
+    unsure.noticed_share_ = 0.4
+    unsure.confidence_ = AnswerConfidence(np.zeros(4))  # right with 0.5, whatever is seen
+    unsure.save(tmp_path / "a.model")
+    images, labels = (of[::9] for of in photographs(1, photos=40)[:2])
+    paths = []
+    for i, (image, label) in enumerate(zip(images, labels, strict=True)):
+        (tmp_path / "shown" / label).mkdir(parents=True, exist_ok=True)
+        paths.append(str(tmp_path / "shown" / label / f"{i}.png"))
+        cv2.imwrite(paths[-1], cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+    shown = [str(tmp_path / "a.model"), *([str(tmp_path / "shown")] if as_folder else paths)]
+    answers = {}
+    for option in ([], ["--same-camera"]):
+        printed = CliRunner().invoke(classify, [*shown, "--json", *option])
+        assert printed.exit_code == 0, printed.output
+        assert ("--same-camera" in printed.stderr) is (option == [])
+        found = json.loads(printed.stdout)
+        rows = found["images"] if as_folder else found
+        answers[bool(option)] = [(row["label"], row["reason"]) for row in rows]
+    before = [(answer.label, answer.reason) for answer in unsure.classify(images)]
+    doubted = [of if of[0] == "unknown" else ("unknown", UNNOTICED) for of in before]
+    assert len(set(before)) > 1
+    assert sorted(answers[True]) == sorted(before)
+    assert sorted(answers[False]) == sorted(doubted)
+    both = CliRunner().invoke(classify, [*shown, "--same-camera", "--own-statistics"])
+    assert both.exit_code == 2

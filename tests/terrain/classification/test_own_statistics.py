@@ -1,3 +1,5 @@
+from copy import copy
+
 import cv2
 import numpy as np
 import pytest
@@ -117,6 +119,15 @@ def test_only_the_default_preset_has_them(classifier, rng):
     paper = TerrainClassifier("chen2023").fit(images(rng, 3, (1, 16)), ["a"] * 3 + ["b"] * 3)
     with pytest.raises(ConfigError, match="chen2023"):
         OwnStatisticsClassifier(paper)
+
+
+def test_the_camera_of_training_is_no_other_one(classifier):
+    unsure = copy(classifier)
+    unsure.noticed_share_ = 0.4
+    assert used_as(unsure, ClassifierConfig(same_camera=True)).noticed_share_ is None
+    assert used_as(unsure, ClassifierConfig()).noticed_share_ == 0.4
+    with pytest.raises(ConfigError, match="another camera"):
+        used_as(unsure, ClassifierConfig(own_statistics=True, same_camera=True))
 
 
 def test_classify_standardises_by_all_images(classifier, tmp_path, rng):

@@ -3,11 +3,14 @@
 import csv
 import json
 import shutil
+from copy import copy
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
+from terrain.classification.confidence import AnswerConfidence
 from terrain.cli.run import run
 
 
@@ -77,6 +80,27 @@ def test_learned_toml_goes_back_in(curvy_run, tmp_path):
     assert answer.exit_code == 0, answer.output
     assert content_of(second)["initial_terrain"] == "sand"
     assert str(second / "learned.toml") in answer.output
+
+
+@pytest.mark.usefixtures("no_report")
+def test_names_that_another_camera_may_have_are_unknown_unless_it_is_the_same(
+    across_run, classifier, tmp_path
+):
+    unsure = copy(classifier)
+    unsure.noticed_share_ = 0.4
+    unsure.confidence_ = AnswerConfidence(np.zeros(4))  # right with 0.5, whatever is seen
+    unsure.save(tmp_path / "a.model")
+    labels = {}
+    for option in ([], ["--same-camera"]):
+        out = tmp_path / f"out {len(option)}"
+        answer = invoke(across_run, "--out", out, "--model", tmp_path / "a.model", *option)
+        assert answer.exit_code == 0, answer.output
+        assert ("images of another camera may pass" in answer.output) is (option == [])
+        assert content_of(out)["config"]["classifier"]["same_camera"] is bool(option)
+        with (out / "terrain.csv").open() as stream:
+            labels[bool(option)] = {row["label"] for row in csv.DictReader(stream)}
+    assert labels[False] <= {"", "unknown"}
+    assert labels[True] & {"gravel", "boards"}
 
 
 @pytest.mark.usefixtures("no_report")

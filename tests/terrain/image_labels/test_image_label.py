@@ -2,7 +2,7 @@
 
 import pytest
 
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE, Classification
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, UNNOTICED, Classification
 from terrain.classification.no_ground import DARK, OVEREXPOSED, SMOOTH
 from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ImageLabel, answered
@@ -13,7 +13,7 @@ def test_an_image_that_resembles_no_terrain_is_evidence(reason):
     assert ImageLabel(0.0, "", "unknown", reason=reason).is_evidence
 
 
-@pytest.mark.parametrize("reason", [DOUBTFUL, BY_LIGHT, DARK, OVEREXPOSED])
+@pytest.mark.parametrize("reason", [DOUBTFUL, UNNOTICED, BY_LIGHT, DARK, OVEREXPOSED])
 def test_a_doubtful_name_or_an_image_without_grey_is_none(reason):
     assert not ImageLabel(0.0, "", "unknown", reason=reason).is_evidence
     assert ImageLabel(0.0, "", "mud", reason=reason).is_evidence
