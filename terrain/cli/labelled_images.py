@@ -50,7 +50,7 @@ def print_held_out(
     for note in (*_notes(classifier, model, answers), *_of_scale(classifier, folder)):
         click.echo(f"Note: {note}", err=True)
     likeness = classifier.likeness(readable([each.photo.path for each in held_out]))
-    share = classifier.noticed_share_
+    share, named = classifier.noticed_share_, held_out
     answers = [
         each
         if each.in_training
@@ -61,6 +61,8 @@ def print_held_out(
     print_likeness(likeness, share)
     print_no_ground([each.answer.reason for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
+    if doubted := _of_doubted(named, held_out):
+        click.echo(f"Note: {doubted}", err=True)
     click.echo(
         json.dumps(_json(score, answers), indent=2) if as_json else _text(score, len(held_out))
     )
@@ -103,6 +105,22 @@ def _of_scale(classifier: "TerrainClassifier", folder: Path) -> list[str]:
         f"manifest.csv states {stated:g} m per pixel, the model was trained at {own:g}: its "
         "answers are for that scale"
     ]
+
+
+def _of_doubted(named: "list[LabelledAnswer]", answers: "list[LabelledAnswer]") -> str | None:
+    """What `--same-camera` would bring, by answers before and after names were doubted."""
+    from terrain.classification.answer import UNNOTICED
+
+    pairs = zip(named, answers, strict=True)
+    doubted = [before for before, after in pairs if after.answer.reason == UNNOTICED]
+    if not doubted:
+        return None
+    right = sum(each.answer.label == each.photo.label for each in doubted)
+    return (
+        f"{len(doubted)} names are unknown, as the model would not notice another camera; {right} "
+        "of them were right. If these images are of the camera of training, keep them with "
+        "--same-camera"
+    )
 
 
 def _text(score: "HeldOutScore", images: int) -> str:

@@ -130,17 +130,20 @@ def test_the_verb_keeps_names_of_the_same_camera(model, tmp_path, as_folder):
         paths.append(str(tmp_path / "shown" / label / f"{i}.png"))
         cv2.imwrite(paths[-1], cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
     shown = [str(tmp_path / "a.model"), *([str(tmp_path / "shown")] if as_folder else paths)]
-    answers = {}
+    answers, said = {}, []
     for option in ([], ["--same-camera"]):
         printed = CliRunner().invoke(classify, [*shown, "--json", *option])
         assert printed.exit_code == 0, printed.output
         assert ("--same-camera" in printed.stderr) is (option == [])
+        said.append(printed.stderr)
         found = json.loads(printed.stdout)
         rows = found["images"] if as_folder else found
         answers[bool(option)] = [(row["label"], row["reason"]) for row in rows]
     before = [(answer.label, answer.reason) for answer in unsure.classify(images)]
     doubted = [of if of[0] == "unknown" else ("unknown", UNNOTICED) for of in before]
     assert len(set(before)) > 1
+    named = sum(label != "unknown" for label, _ in before)
+    assert (f"Note: {named} names are unknown, as the model" in said[0]) is as_folder
     assert sorted(answers[True]) == sorted(before)
     assert sorted(answers[False]) == sorted(doubted)
     both = CliRunner().invoke(classify, [*shown, "--same-camera", "--own-statistics"])
