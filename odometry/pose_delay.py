@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
+from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.late_positions import sure_lag
 from odometry.checks.stamps.timing import (
     CERTAIN,
@@ -22,7 +23,7 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run
 from odometry.table import Table
 
-FINDING = "pose_late"
+FINDING, PARTS = "pose_late", {"yaw_late", "positions_late"}
 LEAST_LATE_S, LEAST_LATE_PERIODS = 0.05, 0.25  # a shorter delay is not reported by `check` either
 OF_GYROSCOPE = 0.5  # of a delay, by which treads may be late too; then it is the gyroscope's
 Moved = tuple[Run, tuple[FilterEvent, ...]]
@@ -53,6 +54,8 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
     if given_s:
         return _moved(run, pose, given_s, f"by {given_s:.3f} s, as given")
     searched = config.watch_sensors and not config.causal
+    if searched and (parted := _of_two_times(run)) is not None:
+        return parted
     delay_s = _certain_delay_s(run) if searched else None
     if delay_s is not None:
         return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
@@ -61,6 +64,18 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         return run, ()
     text = f"by {of_positions.seconds:.3f} s against the treads, which turn as the gyroscope does"
     return _moved(run, pose, of_positions.seconds, text)
+
+
+def _of_two_times(run: Run) -> Moved | None:
+    """The run with the part of its poses that is late, or early, alone moved; None without one."""
+    if run.pose is None or run.yaw_rate is None:
+        return None
+    part = next((one for one in explained_lags(Evidence(run)) if one.name in PARTS), None)
+    if part is None or part.mend is None:
+        return None
+    begin_s, end_s = run.pose.stamps_s[[0, -1]]
+    text = f"{part.seen}: that part of the poses was taken at the stamps at which it was measured"
+    return part.mend(run), (FilterEvent("late_poses", float(begin_s), float(end_s), text),)
 
 
 def _certain_delay_s(run: Run) -> float | None:
@@ -75,8 +90,8 @@ def _certain_delay_s(run: Run) -> float | None:
     if not late or late[0].mend is None:
         return None
     mended = late[0].mend(run)
-    if mended.pose is None:
-        return None
+    if mended.pose is None or not any(one.name == FINDING for one in explained_lags(evidence)):
+        return None  # yaw alone may be late
     delay_s = float(run.pose.stamps_s[0] - mended.pose.stamps_s[0])
     remains = any(finding.name == FINDING for finding in timing(Evidence(mended)))
     return delay_s if delay_s > 0 and not remains else None

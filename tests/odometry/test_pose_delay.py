@@ -10,8 +10,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.pose_delay import without_pose_delay
 from odometry.run import Robot, Run
 from odometry.table import Table
-from tests.odometry.checks.faulty import put
+from tests.odometry.checks.faulty import put, treads
 from tests.odometry.checks.test_other_robots import without_gyroscope
+from tests.odometry.checks.test_parts_of_poses import driven, late
 from tests.odometry.checks.test_positions_alone import starts_and_stops
 from tests.odometry.estimation.sensor_drives import WIDTH, drive
 
@@ -48,6 +49,33 @@ def test_what_is_not_certain_is_left_alone(late_s):
     run, events = without_pose_delay(given, IcrEkfConfig())
     assert run is given
     assert events == ()
+
+
+def turned(run, name):
+    return np.unwrap(run.pose[name]) if name == "yaw" else run.pose[name]
+
+
+@pytest.mark.parametrize(("names", "late_s"), [(("yaw",), 0.5), (("x", "y"), 0.7)])
+def test_of_two_times_the_part_that_is_late_is_moved(names, late_s):
+    """All of the poses, moved by the delay of their yaw, would have positions that are early."""
+    on_time = driven()
+    run, (event,) = without_pose_delay(late(on_time, names, late_s), IcrEkfConfig())
+    assert event.kind == "late_poses"
+    for name, within in (("x", 0.12), ("y", 0.12), ("yaw", 0.1)):
+        truth = np.interp(run.pose["t"], on_time.pose["t"], turned(on_time, name))
+        off = run.pose[name] - truth
+        off = np.angle(np.exp(1j * off)) if name == "yaw" else off
+        inside = np.isfinite(off) & (run.pose["t"] > 2) & (run.pose["t"] < 195)
+        assert inside.sum() > 1500
+        assert np.abs(off[inside]).max() < within
+
+
+def test_where_positions_contradict_a_late_yaw_and_nothing_decides_nothing_is_moved():
+    """The robot follows its treads late as well, so that yaw alone is not named."""
+    t = driven().odometry["t"]
+    early = treads(driven(), lambda *both: tuple(np.interp(t + 0.3, t, of) for of in both))
+    given = late(early, ("yaw",), 0.5)
+    assert without_pose_delay(given, IcrEkfConfig()) == (given, ())
 
 
 def test_a_gyroscope_that_is_early_leaves_poses_alone():

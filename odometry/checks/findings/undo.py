@@ -65,20 +65,43 @@ def gyroscope_times(run: Run, factor: float) -> Mend:
     return times("imu", factor, *axes)
 
 
-def sooner(names: tuple[str, ...], seconds: float, table: str = "odometry") -> Mend:
-    """Columns of a table as they were so much later, at the stamps as they are."""
+def sooner(names: tuple[str, ...], seconds: float) -> Mend:
+    """Columns of odometry.csv as they were so much later, at the stamps as they are."""
 
     def mend(run: Run) -> Run:
-        t = getattr(run, table).stamps_s
+        t = run.odometry.stamps_s
 
         def at_once(values: FloatArray) -> FloatArray:
-            known = np.isfinite(values)
-            later = np.interp(t + seconds, t[known], values[known])
-            return np.where(known, later, np.nan)
+            return np.asarray(np.interp(t + seconds, t, values))
 
-        return in_turn(*(changed(table, name, at_once) for name in names))(run)
+        return in_turn(*(changed("odometry", name, at_once) for name in names))(run)
 
     return mend
+
+
+def yaw_sooner(seconds: float) -> Mend:
+    """Measured yaw as it was so much later, at the stamps as they are; NaN beyond its rows."""
+
+    def mend(run: Run) -> Run:
+        if run.pose is None:
+            return run
+        t = run.pose.stamps_s
+
+        def at_once(yaw: FloatArray) -> FloatArray:
+            known = np.isfinite(yaw)
+            turned = np.unwrap(yaw[known])
+            later = np.interp(t + seconds, t[known], turned, left=np.nan, right=np.nan)
+            return np.where(known, later, np.nan)
+
+        return changed("pose", "yaw", at_once)(run)
+
+    return mend
+
+
+def positions_sooner(seconds: float) -> Mend:
+    """Measured positions at stamps that are so much earlier, with the yaw of these stamps."""
+    stamps = changed("pose", "t", lambda stamps_s: stamps_s - seconds)
+    return in_turn(stamps, yaw_sooner(-seconds))
 
 
 def between(run: Run, begin_s: float, end_s: float) -> Run:

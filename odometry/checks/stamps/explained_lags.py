@@ -11,10 +11,10 @@ from odometry.checks.evidence.motion import WINDOW_S
 from odometry.checks.evidence.relation import Relation
 from odometry.checks.findings.finding import Finding, disagreement
 from odometry.checks.stamps.held_treads import held_treads
-from odometry.checks.stamps.late_positions import apart_from_yaw, lag_beside_yaw
+from odometry.checks.stamps.late_positions import apart_from_yaw
 from odometry.checks.stamps.late_stamps import one_side_alone
 from odometry.checks.stamps.one_delay import answers, is_one_delay
-from odometry.checks.stamps.parts_of_poses import late_part
+from odometry.checks.stamps.parts_of_poses import late_part, turns_in_step, yaw_late
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.timing import drifting, found_in, lags_of, pose_period_s
 
@@ -51,16 +51,18 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
             continue  # their mean is not
         alone_late = len(found) == 1 and finding.name != "gyroscope_late"
         if alone_late and _goes_along(evidence, finding) is False:
-            apart = apart or f"{finding.seen}, but {TURNS_ALONE}"
+            turns = turns_in_step(lags) if finding.name == "pose_late" and not apart else None
+            if turns is not None:
+                yield yaw_late(turns, "the way along fits the treads as it is")
+            else:
+                apart = apart or f"{finding.seen}, but {TURNS_ALONE}"
         elif finding.name != "pose_late":
             yield from _judged(evidence, finding, lags)
         elif not apart:
             alone = "; or those of yaw alone: the positions do not decide" * (apart is None)
             yield from _judged(evidence, replace(finding, cause=finding.cause + alone), lags)
     if apart:
-        speed = lag_beside_yaw(evidence, lags.get(("pose", "treads")))
-        late = late_part(evidence, speed, lags) if speed else None
-        yield late or disagreement(apart)
+        yield late_part(evidence, lags) or disagreement(apart)
 
 
 def _judged(

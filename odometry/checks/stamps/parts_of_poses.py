@@ -10,7 +10,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag
 from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.findings.undo import changed, in_turn, sooner
+from odometry.checks.findings.undo import positions_sooner, yaw_sooner
+from odometry.checks.stamps.late_positions import lag_beside_yaw
 from odometry.geometry.angles import wrap
 
 ON_TIME_S = 0.15  # good poses are early by up to 0.11 s once constant delays are removed
@@ -25,45 +26,46 @@ NEAR = 0.75  # of the delay of the speed, that the course has at least
 EARLY_S = 0.1  # that a course is early, which no sliding does
 
 
-def late_part(evidence: Evidence, speed: Lag, lags: dict[tuple[str, str], Lag]) -> Finding | None:
-    """Which of positions and yaw is late; None where that cannot be determined.
+def late_part(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Finding | None:
+    """Which of positions and yaw is late, by the lags of turns of each pair of sensors.
 
-    Parameters
-    ----------
-    evidence : Evidence
-    speed : Lag
-        Of the speed between positions behind that of the treads.
-    lags : dict
-        Of turns, by pair of sensors.
+    None where that cannot be determined.
     """
+    turns, speed = turns_in_step(lags), lag_beside_yaw(evidence, lags.get(("pose", "treads")))
+    if turns is None or speed is None:
+        return None
+    if abs(speed.seconds) < ON_TIME_S and abs(turns.seconds) > ON_TIME_S:
+        along = f"the speed between positions {speed.seconds:+.2f} s against that of the treads"
+        return yaw_late(turns, along)
+    if abs(turns.seconds) < ON_TIME_S and _course_is_late(evidence, speed.seconds):
+        return _positions_late(turns, speed)
+    return None
+
+
+def turns_in_step(lags: dict[tuple[str, str], Lag]) -> Lag | None:
+    """The lag of measured yaw behind a gyroscope that turns in step with the treads, else None."""
     wheels, by_gyroscope, by_treads = (
         lags.get(pair)
         for pair in (("treads", "gyroscope"), ("pose", "gyroscope"), ("pose", "treads"))
     )
     if wheels is None or by_gyroscope is None or by_treads is None:
         return None
-    in_step = abs(wheels.seconds) < ON_TIME_S
-    if not in_step or abs(by_gyroscope.seconds - by_treads.seconds) > SAME_S:
-        return None
-    if abs(speed.seconds) < ON_TIME_S and abs(by_gyroscope.seconds) > ON_TIME_S:
-        return _yaw_late(by_gyroscope, speed)
-    if abs(by_gyroscope.seconds) < ON_TIME_S and _course_is_late(evidence, speed.seconds):
-        return _positions_late(by_gyroscope, speed)
-    return None
+    alike = abs(by_gyroscope.seconds - by_treads.seconds) < SAME_S
+    return by_gyroscope if abs(wheels.seconds) < ON_TIME_S and alike else None
 
 
-def _yaw_late(turns: Lag, speed: Lag) -> Finding:
+def yaw_late(turns: Lag, along: str) -> Finding:
+    """Yaw that is late alone, by its turns, with words for the positions, which are not."""
     word = _word(turns)
     return Finding(
         "yaw_late",
         Level.WARNING,
         f"measured yaw is {abs(turns.seconds):.2f} +- {turns.sigma_s:.2f} s {word} against "
-        f"gyroscope and treads, and the speed between positions {speed.seconds:+.2f} s against "
-        "that of the treads",
+        f"gyroscope and treads, and {along}",
         f"Yaw of pose.csv is {word} and its positions are not: they come from two sources, one of "
         "which is delayed or filtered",
         f"Give yaw the stamps of its sensor (subtract {turns.seconds:+.2f} s), or leave it empty",
-        mend=in_turn(changed("pose", "yaw", _unwrapped), sooner(("yaw",), turns.seconds, "pose")),
+        mend=yaw_sooner(turns.seconds),
     )
 
 
@@ -78,19 +80,12 @@ def _positions_late(turns: Lag, speed: Lag) -> Finding:
         f"Positions of pose.csv are {word} and its yaw is not: they come from two sources (a "
         "receiver whose positions are delayed or filtered, beside the yaw of an IMU)",
         f"Give positions the stamps of their sensor (subtract {speed.seconds:+.2f} s)",
-        mend=sooner(("x", "y"), speed.seconds, "pose"),
+        mend=positions_sooner(speed.seconds),
     )
 
 
 def _word(lag: Lag) -> str:
     return "late" if lag.seconds > 0 else "early"
-
-
-def _unwrapped(yaw: FloatArray) -> FloatArray:
-    """Yaw (M,) without jumps of a turn; NaN where it was not measured."""
-    known, found = np.isfinite(yaw), yaw.copy()
-    found[known] = np.unwrap(yaw[known])
-    return found
 
 
 def _course_is_late(evidence: Evidence, seconds: float) -> bool:
