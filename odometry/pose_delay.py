@@ -40,7 +40,8 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
         yaw rate with that of the poses (`odometry.checks.stamps.timing`), of positions without yaw
         by their speed and that of treads that turn in step with it, and used only where that is
-        certain.
+        certain. Of positions and yaw that are of two times (`yaw_late`, `positions_late` of the
+        check) the part that is late, or early, is moved alone.
 
     Returns
     -------
@@ -53,45 +54,39 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         return run, ()
     if given_s:
         return _moved(run, pose, given_s, f"by {given_s:.3f} s, as given")
-    searched = config.watch_sensors and not config.causal
-    if searched and (parted := _of_two_times(run)) is not None:
-        return parted
-    delay_s = _certain_delay_s(run) if searched else None
+    if not config.watch_sensors or config.causal or run.yaw_rate is None:
+        return run, ()
+    return _searched(run, pose)
+
+
+def _searched(run: Run, pose: Table) -> Moved:
+    evidence = Evidence(run)
+    named = list(explained_lags(evidence))
+    for part in named:
+        if part.name in PARTS and part.mend is not None:
+            return part.mend(run), (_event(pose, part.seen),)
+    delay_s = _certain_delay_s(evidence, {finding.name for finding in named})
     if delay_s is not None:
         return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
-    of_positions = sure_lag(Evidence(run)) if searched and run.yaw_rate is not None else None
+    of_positions = sure_lag(evidence)
     if of_positions is None:
         return run, ()
     text = f"by {of_positions.seconds:.3f} s against the treads, which turn as the gyroscope does"
     return _moved(run, pose, of_positions.seconds, text)
 
 
-def _of_two_times(run: Run) -> Moved | None:
-    """The run with the part of its poses that is late, or early, alone moved; None without one."""
-    if run.pose is None or run.yaw_rate is None:
-        return None
-    part = next((one for one in explained_lags(Evidence(run)) if one.name in PARTS), None)
-    if part is None or part.mend is None:
-        return None
-    begin_s, end_s = run.pose.stamps_s[[0, -1]]
-    text = f"{part.seen}: that part of the poses was taken at the stamps at which it was measured"
-    return part.mend(run), (FilterEvent("late_poses", float(begin_s), float(end_s), text),)
-
-
-def _certain_delay_s(run: Run) -> float | None:
-    if run.pose is None or run.yaw_rate is None:
-        return None
-    evidence = Evidence(run)
-    lags = lags_of(evidence)
+def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:
+    """The delay of all of the poses; None where the check, which `named` others, does not know."""
+    run, lags = evidence.run, lags_of(evidence)
     found = list(found_in(evidence, lags))
     if not found:
         return _short_delay_s(evidence, lags)
     late = [finding for finding in found if finding.name == FINDING]
-    if not late or late[0].mend is None:
+    if not late or late[0].mend is None or FINDING not in named:
         return None
     mended = late[0].mend(run)
-    if mended.pose is None or not any(one.name == FINDING for one in explained_lags(evidence)):
-        return None  # yaw alone may be late
+    if run.pose is None or mended.pose is None:
+        return None
     delay_s = float(run.pose.stamps_s[0] - mended.pose.stamps_s[0])
     remains = any(finding.name == FINDING for finding in timing(Evidence(mended)))
     return delay_s if delay_s > 0 and not remains else None
@@ -112,11 +107,11 @@ def _short_delay_s(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> floa
 
 def _moved(run: Run, pose: Table, delay_s: float, text: str) -> Moved:
     columns = {**pose.columns, "t": pose.stamps_s - delay_s}
-    event = FilterEvent(
-        "late_poses",
-        float(pose.stamps_s[0]),
-        float(pose.stamps_s[-1]),
-        f"the poses are late: {text}; they were taken at the stamps at which they were measured",
-        (delay_s,),
-    )
+    event = _event(pose, f"the poses are late: {text}", delay_s)
     return replace(run, pose=replace(pose, columns=columns)), (event,)
+
+
+def _event(pose: Table, text: str, *delay_s: float) -> FilterEvent:
+    begin_s, end_s = pose.stamps_s[[0, -1]].tolist()
+    taken = "they were taken at the stamps at which they were measured"
+    return FilterEvent("late_poses", begin_s, end_s, f"{text}; {taken}", delay_s)
