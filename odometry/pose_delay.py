@@ -64,7 +64,8 @@ def _searched(run: Run, pose: Table) -> Moved:
     named = list(explained_lags(evidence))
     for part in named:
         if part.name in PARTS and part.mend is not None:
-            return part.mend(run), (_event(pose, part.seen),)
+            text = f"{part.seen}; that part was taken at the stamps at which it was measured"
+            return part.mend(run), (_event(pose, text),)
     delay_s = _certain_delay_s(evidence, {finding.name for finding in named})
     if delay_s is not None:
         return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
@@ -107,11 +108,11 @@ def _short_delay_s(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> floa
 
 def _moved(run: Run, pose: Table, delay_s: float, text: str) -> Moved:
     columns = {**pose.columns, "t": pose.stamps_s - delay_s}
-    event = _event(pose, f"the poses are late: {text}", delay_s)
+    taken = "they were taken at the stamps at which they were measured"
+    event = _event(pose, f"the poses are late: {text}; {taken}", delay_s)
     return replace(run, pose=replace(pose, columns=columns)), (event,)
 
 
 def _event(pose: Table, text: str, *delay_s: float) -> FilterEvent:
     begin_s, end_s = pose.stamps_s[[0, -1]].tolist()
-    taken = "they were taken at the stamps at which they were measured"
-    return FilterEvent("late_poses", begin_s, end_s, f"{text}; {taken}", delay_s)
+    return FilterEvent("late_poses", begin_s, end_s, text, delay_s)

@@ -51,7 +51,8 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
             continue  # their mean is not
         alone_late = len(found) == 1 and finding.name != "gyroscope_late"
         if alone_late and _goes_along(evidence, finding) is False:
-            turns = turns_in_step(lags) if finding.name == "pose_late" and not apart else None
+            is_pose = finding.name == "pose_late" and not apart
+            turns = turns_in_step(evidence, lags) if is_pose else None
             if turns is not None:
                 yield yaw_late(turns, "the way along fits the treads as it is")
             else:

@@ -10,12 +10,12 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag, Rate, lag_of_rates
+from odometry.checks.evidence.motion import WIDTH
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import changed
 from odometry.checks.stamps.timing import lag_of_treads
 from odometry.windows.gaps import odometry_gaps
 
-WIDTH = 1.8  # track widths, as which a robot turns where no gyroscope says more
 LEAST_WIDTH_S = 0.5
 MOST_LAG_S = 3.5
 LEAST_LAG_S = 0.4  # robots on sand follow their treads by up to 0.3 s

@@ -31,7 +31,10 @@ def late_part(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Finding |
 
     None where that cannot be determined.
     """
-    turns, speed = turns_in_step(lags), lag_beside_yaw(evidence, lags.get(("pose", "treads")))
+    turns, speed = (
+        turns_in_step(evidence, lags),
+        lag_beside_yaw(evidence, lags.get(("pose", "treads"))),
+    )
     if turns is None or speed is None:
         return None
     if abs(speed.seconds) < ON_TIME_S and abs(turns.seconds) > ON_TIME_S:
@@ -42,13 +45,16 @@ def late_part(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Finding |
     return None
 
 
-def turns_in_step(lags: dict[tuple[str, str], Lag]) -> Lag | None:
-    """The lag of measured yaw behind a gyroscope that turns in step with the treads, else None."""
+def turns_in_step(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Lag | None:
+    """The lag of measured yaw behind a gyroscope that turns in step with the treads, else None.
+
+    Also None of yaw in degrees, which has another cause before its stamps.
+    """
     wheels, by_gyroscope, by_treads = (
         lags.get(pair)
         for pair in (("treads", "gyroscope"), ("pose", "gyroscope"), ("pose", "treads"))
     )
-    if wheels is None or by_gyroscope is None or by_treads is None:
+    if evidence.yaw_in_degrees or wheels is None or by_gyroscope is None or by_treads is None:
         return None
     alike = abs(by_gyroscope.seconds - by_treads.seconds) < SAME_S
     return by_gyroscope if abs(wheels.seconds) < ON_TIME_S and alike else None

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import put, treads
+from tests.odometry.checks.faulty import put, treads, yaw
 from tests.odometry.checks.test_confirmed_causes import turning_all_round
 from tests.odometry.checks.test_other_robots import drive, without_gyroscope
 
@@ -28,8 +28,8 @@ def late(run, names, seconds):
 
 
 def ahead(run, metres):
-    yaw = run.pose["yaw"]
-    x, y = (run.pose[n] + metres * f(yaw) for n, f in (("x", np.cos), ("y", np.sin)))
+    angle = run.pose["yaw"]
+    x, y = (run.pose[n] + metres * f(angle) for n, f in (("x", np.cos), ("y", np.sin)))
     return put(run, "pose", x=x, y=y)
 
 
@@ -82,3 +82,9 @@ def test_without_a_gyroscope_nothing_decides(names):
     named = [found.name for found in warned(without_gyroscope(late(driven(), names, 0.5)))]
     assert named
     assert not {"yaw_late", "positions_late"} & set(named)
+
+
+def test_a_delay_of_yaw_in_degrees_is_not_named_before_its_unit():
+    (found,) = warned(yaw(late(driven(), ("yaw",), 0.5), np.degrees))
+    assert found.name != "yaw_late"
+    assert "fit only when read as degrees" in found.seen
