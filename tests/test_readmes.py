@@ -33,8 +33,9 @@ README_FILES = [
         "tests/README.md",
     )
 ] + sorted((ROOT / "tests/studies").glob("*.md"))
+CHANGES = ROOT / "terrain/CHANGES.md"
 each_readme = pytest.mark.parametrize(
-    "readme", README_FILES, ids=lambda file: str(file.relative_to(ROOT))
+    "readme", [*README_FILES, CHANGES], ids=lambda file: str(file.relative_to(ROOT))
 )
 # a sixth to two fifths of the time of mypy goes into garbage of a process that ends anyway
 WITHOUT_COLLECTION = """
