@@ -80,6 +80,8 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         and of files of version 0.9.
     training_look_ : TrainingLook or None
         What `likeness` compares images with; None of features and of files of version 0.9.
+    colour_range_ : ColourRange or None
+        The same for colours; None where `colour_` is not, and of files before version 0.36.
     noticed_share_ : float or None
         Of altered training photographs that `likeness` calls unlike; None without such looks, where
         no terrain has five photographs, and of files before version 0.34.

@@ -7,6 +7,7 @@ import numpy as np
 from sklearn.base import clone
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
+from terrain.classification.colour_range import ColourRange
 from terrain.classification.confidence import WEIGHTS, weight_of_others
 from terrain.classification.confidence_learning import (
     Answers,
@@ -19,7 +20,6 @@ from terrain.classification.confidence_learning import (
 )
 from terrain.classification.feature_jobs import Transformed, features_of
 from terrain.classification.features import FeatureSettings
-from terrain.classification.likeness import TrainingLook
 from terrain.classification.look import spread_rows
 from terrain.classification.neighbours import DiscriminantNeighbours
 from terrain.classification.no_ground import ShownGround
@@ -30,6 +30,7 @@ from terrain.classification.presets import PRESETS
 from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
 from terrain.classification.trained_on import common_size, has_colour
+from terrain.classification.training_look import TrainingLook
 from terrain.classification.validation import CrossValidation, Fold, Samples, best_way
 from terrain.errors import PatchError
 from terrain.images import to_grey
@@ -161,11 +162,13 @@ class LearningClassifier(TrainedClassifier):
     ) -> None:
         """Keep how the training patches look, what they show, and some of their features."""
         self.training_look_ = self.old_samples_ = self.shown_ground_ = None
-        self.noticed_share_ = None
+        self.colour_range_ = self.noticed_share_ = None
         if patches is None:
             return
         photographs = samples.codes, samples.groups
         self.training_look_ = TrainingLook.of(patches, *photographs)
+        if self.colour_:
+            self.colour_range_ = ColourRange.of(patches, *photographs)
         self.noticed_share_ = noticed_share(self.training_look_, patches, *photographs)
         if not PRESETS[self.preset].as_published:
             self.shown_ground_ = ShownGround.of(list(patches), samples.codes)

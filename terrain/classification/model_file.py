@@ -9,10 +9,10 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
+from terrain.classification.colour_range import ColourRange
 from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.feature_jobs import Transformed, Transformer, features_of
 from terrain.classification.features import FeatureSettings
-from terrain.classification.likeness import TrainingLook
 from terrain.classification.look import look_of
 from terrain.classification.model_settings import ModelSettings, NetworkSettings
 from terrain.classification.neighbours import Neighbours
@@ -22,6 +22,7 @@ from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import OtherThings
 from terrain.classification.presets import PRESETS
 from terrain.classification.trained_on import TrainedOn, check_codes
+from terrain.classification.training_look import TrainingLook
 from terrain.errors import ImageError, ModelFileError, NetworkError
 
 CLASSIFIER = FileKind("terrain-odometry classifier", 1, "model file", ModelFileError)
@@ -46,6 +47,7 @@ class ModelFile:
     one_patch_: bool
     trained_on_: TrainedOn | None
     training_look_: TrainingLook | None
+    colour_range_: ColourRange | None
     noticed_share_: float | None
     shown_ground_: ShownGround | None
     other_things_: OtherThings | None
@@ -72,6 +74,8 @@ class ModelFile:
         arrays = self._neighbours.arrays()
         if self.training_look_ is not None:
             arrays |= self.training_look_.arrays()
+        if self.colour_range_ is not None:
+            arrays |= self.colour_range_.arrays()
         if self.shown_ground_ is not None:
             arrays |= self.shown_ground_.arrays()
         if self.other_things_ is not None:
@@ -122,6 +126,7 @@ class ModelFile:
             model._features = features
         model.old_samples_ = OldSamples.from_arrays(arrays, model.classes_)
         model.training_look_ = TrainingLook.from_arrays(arrays, len(settings.classes))
+        model.colour_range_ = ColourRange.from_arrays(arrays)
         model.shown_ground_ = ShownGround.from_arrays(arrays, len(settings.classes))
         model.other_things_ = OtherThings.from_arrays(arrays, len(settings.classes))
         model.confidence_ = AnswerConfidence.from_arrays(arrays)

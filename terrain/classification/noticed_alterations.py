@@ -9,8 +9,9 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from terrain.classification.likeness import FEWEST_IMAGES, TrainingLook
+from terrain.classification.likeness import FEWEST_IMAGES
 from terrain.classification.look import look_of
+from terrain.classification.training_look import TrainingLook
 
 MOST_PHOTOS = 8  # of a terrain: a run shows few
 # Photographs of one camera have 1, of as many cameras as photographs (pavements/) 0.2 to 0.8

@@ -132,6 +132,7 @@ class OwnStatisticsClassifier:
         self.rejection_distance_ = classifier.rejection_distance_
         self.rejection_distances_ = classifier.rejection_distances_
         self.training_look_ = classifier.training_look_
+        self.colour_range_ = classifier.colour_range_
         self.noticed_share_ = classifier.noticed_share_
 
     def see(self, image: ByteImage) -> FloatArray:

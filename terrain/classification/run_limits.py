@@ -63,7 +63,7 @@ class RunLimits:
 
         Differences are from the patches of other photographs.
         """
-        photos = _photos(codes, groups)
+        photos = rows_of_photographs(codes, groups)
         terrains = np.array([codes[rows[0]] for rows in photos])
         weights = 1.0 / np.bincount(terrains)[terrains]
         weights /= weights.sum()
@@ -73,7 +73,7 @@ class RunLimits:
         between = weights @ ((places - weights @ places) ** 2).sum(axis=1)
         variances = np.array([within, max(float(between), 1e-9)])
         unlimited = cls(*_middle_and_precision(means, weights), variances)
-        runs = _runs(photos, terrains)
+        runs = drawn_runs(photos, terrains)
         apart = [unlimited.apart(looks[rows], differences[rows]) for rows in runs]
         without = [  # its own photograph, by which it would seem nearer
             cls(
@@ -178,14 +178,14 @@ def _middle_and_precision(means: FloatArray, weights: FloatArray) -> tuple[Float
     return middle, np.linalg.inv(spread)
 
 
-def _photos(codes: IntArray, groups: AnyArray) -> list[IntArray]:
+def rows_of_photographs(codes: IntArray, groups: AnyArray) -> list[IntArray]:
     """Rows of each photograph of each terrain."""
     numbers = np.unique(groups, return_inverse=True)[1]
     _, members = np.unique(np.column_stack([codes, numbers]), axis=0, return_inverse=True)
     return [np.flatnonzero(members.ravel() == photo) for photo in range(members.max() + 1)]
 
 
-def _runs(photos: list[IntArray], terrains: IntArray) -> list[IntArray]:
+def drawn_runs(photos: list[IntArray], terrains: IntArray) -> list[IntArray]:
     """Rows of runs over one terrain each, of photographs drawn at random."""
     rng = np.random.default_rng(0)
     runs = []

@@ -12,6 +12,7 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.calibration import tempered
+from terrain.classification.colour_range import COLOURLESS, colours_of, is_colourless
 from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.look import look_of, looks_of, middle_of
@@ -93,6 +94,8 @@ class TrainedClassifier(ModelFile):
             return answer
         code = int(np.argmax(list(answer.probabilities.values())))
         reason = self.shown_ground_.lacks(cut_patches(image, self.patch_size_px), code)
+        if not reason and self.colour_ and is_colourless(image):
+            reason = COLOURLESS
         return replace(answer, label=UNKNOWN, reason=reason) if reason else answer
 
     def _calibrated(self, image: ByteImage, answer: Classification) -> Classification:
@@ -186,19 +189,26 @@ class TrainedClassifier(ModelFile):
         """Whether images, as a whole, look like the training photographs; None if unknown.
 
         Sharpness, scale of texture, contrast and exposure of the middle of each image are compared
-        with those of the training patches, of fewer than five images all patches. It says nothing
-        of the terrain.
+        with those of the training patches, of fewer than five images all patches; of models that
+        use colour that as well. It says nothing of the terrain.
         """
         if self.training_look_ is None:
             return None
-        looks, few = [], []
+        looks, few, distances = [], [], []
         for image in images:
-            looks.append(look_of(middle_of(image, self.patch_size_px)))
+            middle = middle_of(image, self.patch_size_px)
+            looks.append(look_of(middle))
             if len(looks) < FEWEST_IMAGES:
                 few.append(looks_of(image, self.patch_size_px))
+            if self.colour_range_ is not None and image.ndim == 3:
+                distances += self.colour_range_.distances(colours_of(middle)[None]).tolist()
         if not 0 < len(looks) < FEWEST_IMAGES:
-            return self.training_look_.compared(np.array(looks))
-        return self.training_look_.compared(np.concatenate(few), len(looks))
+            likeness = self.training_look_.compared(np.array(looks))
+        else:
+            likeness = self.training_look_.compared(np.concatenate(few), len(looks))
+        if self.colour_range_ is None:
+            return likeness
+        return self.colour_range_.compared(likeness, np.array(distances))
 
     def _votes_and_distances(
         self, X: Sequence[ByteImage] | AnyArray

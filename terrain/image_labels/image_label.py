@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, UNNOTICED, Classification
+from terrain.classification.colour_range import COLOURLESS
 from terrain.classification.no_ground import DARK, OVEREXPOSED
 from terrain.classification.training_light import BY_LIGHT
 from terrain.region.region import Region
@@ -59,7 +60,7 @@ class ImageLabel:
         ``unknown`` says that it resembles none with a name; not where a name is doubtful, the image
         white or black, or where the tread strips differ.
         """
-        of_nothing = (DOUBTFUL, UNNOTICED, BY_LIGHT, OVEREXPOSED, DARK)
+        of_nothing = (DOUBTFUL, UNNOTICED, BY_LIGHT, OVEREXPOSED, DARK, COLOURLESS)
         says_nothing = self.is_astride or self.reason.startswith(of_nothing)
         return self.label != UNKNOWN or not says_nothing
 

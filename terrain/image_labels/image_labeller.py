@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
-from terrain.classification.likeness import Likeness, TrainingLook
+from terrain.classification.colour_range import ColourRange, colours_of
+from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained import Classifier
 from terrain.classification.training_light import unless_by_light
@@ -23,6 +25,9 @@ from terrain.image_labels.still_image import StillWatch
 from terrain.images import read_image
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
+
+if TYPE_CHECKING:
+    from terrain.classification.training_look import TrainingLook
 
 KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one light
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance
@@ -45,14 +50,19 @@ class RunLikeness:
     def __init__(self, classifier: Classifier) -> None:
         self._training: TrainingLook | None = getattr(classifier, "training_look_", None)
         self._classifier = classifier
+        self._range: ColourRange | None = getattr(classifier, "colour_range_", None)
+        self._of_colours: deque[FloatArray] = deque(maxlen=KEPT)
         self._looks: deque[FloatArray] = deque(maxlen=KEPT)
         self._differences: deque[FloatArray] = deque(maxlen=KEPT)
 
     def add(self, views: Sequence[ByteImage]) -> None:
         """Add the regions of one image."""
         if self._training is not None:
-            looks = [look_of(middle_of(view, self._classifier.patch_size_px)) for view in views]
-            look = np.mean(looks, axis=0)
+            middles = [middle_of(view, self._classifier.patch_size_px) for view in views]
+            look = np.mean([look_of(middle) for middle in middles], axis=0)
+            if self._range is not None:
+                colours = np.mean([colours_of(of) for of in middles], axis=0)
+                self._of_colours.append(self._range.distances(colours[None])[0])
             self._looks.append(look)
             self._differences.append(self._training.differences(look[None])[0])
 
@@ -61,7 +71,10 @@ class RunLikeness:
         """Of the images so far; None where there is no comparison."""
         if self._training is None:
             return None
-        return self._training.summary(np.array(self._looks), np.array(self._differences))
+        likeness = self._training.summary(np.array(self._looks), np.array(self._differences))
+        if self._range is None:
+            return likeness
+        return self._range.compared(likeness, np.array(self._of_colours))
 
     @property
     def latest(self) -> Likeness | None:

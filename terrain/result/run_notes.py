@@ -70,7 +70,8 @@ def _images(watcher: TerrainWatcher) -> list[str]:
         doubted = sum(label.reason in doubtful for label in watcher.image_labels)
         learned = getattr(watcher.classifier, "confidence_", None) is not None
         what = f"Names that are not surely enough right are unknown ({doubted} images)"
-        found.append(f"{likeness.note}. {what if learned or doubted else 'Here they count less'}")
+        counted = what if learned or doubted else "Here they count less"
+        found.append(f"{likeness.note}. {counted}" if likeness.is_unlike else likeness.note)
     elif likeness is not None and likeness.images:
         share = getattr(watcher.classifier, "noticed_share_", None)
         found += filter(None, [unnoticed(share)])

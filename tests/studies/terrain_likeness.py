@@ -21,9 +21,9 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage, FloatArray
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import balanced_accuracy
-from terrain.classification.likeness import TrainingLook
 from terrain.classification.look import look_of
 from terrain.classification.patches import cut_patches, find_photos, load_patches
+from terrain.classification.training_look import TrainingLook
 from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 

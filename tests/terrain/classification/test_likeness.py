@@ -9,9 +9,10 @@ import pytest
 from click.testing import CliRunner
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.likeness import FEWEST_IMAGES, Likeness, TrainingLook
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.look import look_of
 from terrain.classification.model_file import read_model, write_model
+from terrain.classification.training_look import TrainingLook
 from terrain.cli.classify import classify
 from terrain.errors import ModelFileError
 from terrain.image_labels.image_labeller import WORTH_OF_UNLIKE, RunLikeness

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.classification.likeness import TrainingLook
 from terrain.classification.noticed_alterations import LEAST_NOTICED, noticed_share, unnoticed
+from terrain.classification.training_look import TrainingLook
 
 PHOTOS, SIZE = 12, 64
 

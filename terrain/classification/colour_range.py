@@ -1,0 +1,105 @@
+"""Whether the colours of images are those of the training photographs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.look import spread_rows
+from terrain.classification.run_limits import drawn_runs, rows_of_photographs
+
+FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
+WHITE_SHARE = 0.01  # of white, added to each mean: black has no logarithm
+# Between the channels of a grey image that was stored in three; those of a camera vary by more.
+COLOURLESS_GREYS = 2
+COLOURLESS = "the image is grey (its three channels are equal), the model was trained with colour"
+# Of 180 runs of photographs held out (ground/ and pavements/) one or two are so much nearer to
+# training with red and blue exchanged. A light that is bluer by a quarter is, too.
+EXCHANGED_RATIO, EXCHANGED_LEAST = 0.5, 0.05
+
+
+def is_colourless(image: ByteImage) -> bool:
+    """Whether an image (H, W, 3) is a grey one in three channels."""
+    channels = image.astype(np.int16)
+    return bool(np.ptp(channels, axis=2).max() <= COLOURLESS_GREYS)
+
+
+def colours_of(image: ByteImage) -> FloatArray:
+    """Logarithms of mean red and of mean blue over mean green, (2,), of an image (H, W, 3)."""
+    red, green, blue = np.log(image.reshape(-1, 3).mean(axis=0) / 255 + WHITE_SHARE).tolist()
+    return np.array([red - green, blue - green])
+
+
+@dataclass(frozen=True)
+class ColourRange:
+    """The colours of training patches, and how far runs of held-out photographs are from them.
+
+    Attributes
+    ----------
+    colours : FloatArray, shape (n, 2)
+        Logarithms of mean red and of mean blue over mean green.
+    limit : float
+        Of the mean distance of a run's images to the nearest patch of other photographs: all but
+        one of a hundred runs of three training photographs of one terrain keep it.
+    """
+
+    colours: FloatArray
+    limit: float
+
+    @classmethod
+    def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
+        """Of colour patches with terrains (n,) and photographs (n,), at least two of these."""
+        rows = spread_rows(groups)
+        colours, codes, groups = (
+            np.array([colours_of(patches[i]) for i in rows]),
+            codes[rows],
+            groups[rows],
+        )
+        apart = cdist(colours, colours)
+        apart[groups[:, None] == groups] = np.inf
+        nearest = apart.min(axis=1)
+        photos = rows_of_photographs(codes, groups)
+        runs = drawn_runs(photos, np.array([codes[rows[0]] for rows in photos]))
+        means = [nearest[run].mean() for run in runs]
+        return cls(colours, float(max(np.quantile(means, 1 - FALSE_ALARMS), 1e-9)))
+
+    def distances(self, colours: FloatArray) -> FloatArray:
+        """Of colours (m, 2) to the nearest training patch: as they are, red and blue exchanged."""
+        both = (colours, colours[:, ::-1])
+        return np.column_stack([cdist(of, self.colours).min(axis=1) for of in both])
+
+    def compared(self, likeness: Likeness, distances: FloatArray) -> Likeness:
+        """A likeness with what `distances` (m, 2) of its images say; few images say nothing."""
+        if len(distances) < FEWEST_IMAGES:
+            return likeness
+        as_they_are, exchanged = distances.mean(axis=0).tolist()
+        is_less = exchanged < EXCHANGED_RATIO * as_they_are
+        return replace(
+            likeness,
+            colour_beyond=as_they_are / self.limit,
+            exchanged=is_less and as_they_are - exchanged > EXCHANGED_LEAST,
+        )
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Everything learned, by name."""
+        return {"colour_points": self.colours, "colour_limit": np.array([self.limit])}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self | None:
+        """Rebuild from what `arrays` gave; None of grey models and files before version 0.36.
+
+        Raises
+        ------
+        KeyError, ValueError
+            If the arrays do not fit.
+        """
+        if "colour_points" not in arrays:
+            return None
+        colours, limit = arrays["colour_points"], arrays["colour_limit"]
+        if colours.ndim != 2 or colours.shape[1] != 2 or not len(colours) or limit.shape != (1,):
+            raise ValueError(f"colours of shapes {colours.shape}, {limit.shape}")
+        return cls(colours, float(limit[0]))
