@@ -7,6 +7,7 @@ from terrain.classification.manifest import read_manifest
 from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.patches import SUFFIXES, LabelledPatches
 from terrain.classification.photo_faults import look_alikes, unread_note
+from terrain.classification.photo_origins import set_apart
 from terrain.classification.training import LARGEST_PATCH_PX, Training
 
 
@@ -34,6 +35,7 @@ def notes(
     if chooses_size:
         yield from _of_size(patches, size)
     yield from _of_groups(patches)
+    yield from _of_origins(patches)
     if colour and not classifier.colour_:
         yield "Colour is left out: patches are grey, or most of a class are, or the preset is."
     if (what := unnoticed(classifier.noticed_share_)) is not None:
@@ -81,6 +83,19 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
             f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
             f"and {other}: copies, or frames of one scene. What is held out is no test then; give "
             "photographs of one scene the same photo_id in manifest.csv"
+        )
+
+
+def _of_origins(patches: LabelledPatches) -> Iterator[str]:
+    """Where all photographs of a terrain are of an origin of their own."""
+    apart = set_apart(dict(zip(patches.photos, patches.labels, strict=True)))
+    if apart:
+        terrains = "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
+        yield (
+            "Note: photographs that no other terrain's are like, by what their files say: "
+            f"{terrains}. What is held out is of the same origin, so that a model which recognises "
+            "the camera or the compression, and not the terrain, seems to be right: test it on "
+            "photographs of several terrains by one camera (classify)"
         )
 
 

@@ -58,3 +58,14 @@ def test_photographs_of_another_format_are_not_lost_without_a_word(tmp_path, rng
     (tmp_path / "sand/b.webp").write_bytes(b"an image")
     (note,) = said(tmp_path)
     assert note.startswith("Note: not read: 1 image beside 1 photograph, such as")
+
+
+def test_a_terrain_by_a_camera_of_its_own_is_named(tmp_path, rng):
+    for terrain, quality in {"mud": 50, "sand": 90, "tile": 90}.items():
+        (tmp_path / terrain).mkdir()
+        for photo in range(5):
+            image = rng.integers(0, 256, (80, 80)).astype(np.uint8)
+            file = f"{tmp_path / terrain / str(photo)}.jpg"
+            cv2.imwrite(file, image, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    (note,) = said(tmp_path)
+    assert "by what their files say: mud (JPEG compression: 5 of 5). " in note
