@@ -5,6 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.config import require
 from odometry.errors import IdentificationError
 from odometry.feel.assessment import assessed, choice_words
@@ -135,11 +136,12 @@ def _check(table: FeelTable, windows: Sequence[FeelWindows]) -> None:
 
 FEW_RUNS = 3  # of a terrain
 SPEED_SHARE = (0.1, 0.9)  # quantiles between which speeds of a terrain lie
+RATES_APART = 1.1  # times: sampling rates of one sensor differ by less
 OVERLAP = 0.0  # of these ranges: without any, terrains may differ by speed alone
 
 
 def notes_of(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) -> tuple[str, ...]:
-    """Sentences: columns that only some runs have, few runs, speeds that do not overlap."""
+    """Sentences: columns that some runs lack, few runs, speeds and rates that do not overlap."""
     return tuple(_notes(table, windows, by_day=by_day))
 
 
@@ -164,9 +166,27 @@ def _notes(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) ->
                 f"{one} ({_range(ranges[one])} m/s) and {other} ({_range(ranges[other])} m/s) were "
                 "driven at different speeds: what distinguishes them may be the speed."
             )
+    yield from _of_rates(table, np.array([2 * one.top_hz for one in windows]))
     if not by_day:
         yield "Runs are held out one by one, not by day: runs of one day may be correlated."
 
 
-def _range(of: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> str:
+def _of_rates(table: FeelTable, rates_hz: FloatArray) -> Iterator[str]:
+    """Terrains all of whose runs (of rates (n,)) were sampled at rates that no other has."""
+    for name in table.names:
+        of = table.labels == name
+        own, others = (rates_hz[np.unique(table.runs[rows])] for rows in (of, ~of))
+        if own.max() * RATES_APART < others.min() or others.max() * RATES_APART < own.min():
+            yield (
+                f"all runs of {name} were sampled {_rates(own)} times a second, those of other "
+                f"terrains {_rates(others)} times: another IMU or its filter may be what "
+                "distinguishes it, held out as well."
+            )
+
+
+def _rates(of: FloatArray) -> str:
+    return " to ".join(dict.fromkeys(f"{one:.0f}" for one in (of.min(), of.max())))
+
+
+def _range(of: FloatArray) -> str:
     return f"{of[0]:.2f} to {of[1]:.2f}"
