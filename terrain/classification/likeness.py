@@ -61,7 +61,10 @@ class Likeness:
     @property
     def note(self) -> str | None:
         """A warning where labels are in doubt; else None."""
-        return ". ".join(filter(None, (self._of_looks, self._of_colours))) or None
+        looks, colours = self._of_looks, self._of_colours
+        if looks and colours:
+            return f"{looks}. {colours[0].upper()}{colours[1:]}"
+        return looks or colours or None
 
     @property
     def _of_looks(self) -> str:

@@ -101,7 +101,12 @@ def test_another_white_balance_is_no_exchange(model):
     likeness = likeness_of(model, greener)
     assert likeness.colour_beyond > 1
     assert not likeness.exchanged
-    assert "the colours of the images are unlike" in likeness.note
+    assert "colours of the images are unlike" in likeness.note
+
+
+def test_both_notes_are_sentences():
+    one = Likeness(FEWEST_IMAGES, 0.9, 0.9, (), beyond=2.0, colour_beyond=2.0)
+    assert "train with them. The colours of the images are unlike" in one.note
 
 
 def test_few_images_say_nothing(model):
