@@ -55,8 +55,8 @@ def save_identified_icrs(
     )
     windows = windows_of([with_named_terrain(run, terrain) for run in runs], config)
     measured, fitted = {}, {}
-    for name, ground in found.terrains.items():
-        fit, alphas = ground.fit, np.array(NO_SLIP)
+    for name, of_terrain in found.terrains.items():
+        fit, alphas = of_terrain.fit, np.array(NO_SLIP)
         if fit.model.has_constant_icrs:
             form = fit.model.icr_form(fit.packed)
             fitted[name], alphas = form.icrs, form.alphas

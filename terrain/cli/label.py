@@ -147,7 +147,7 @@ def label(
         ]
     else:
         given = [given_terrain(run, source) for run in read]
-    ground = label_runs(
+    labelled = label_runs(
         read,
         given,
         config,
@@ -157,12 +157,12 @@ def label(
     )
     output = replace(output, earlier=(*output.earlier, *corrections.paths))
     with output.writing() as part:
-        unusable = write_labelled_patches(part, ground, corrections, show_progress=True)
+        unusable = write_labelled_patches(part, labelled, corrections, show_progress=True)
     for file, reason in unusable.items():
         click.echo(f"left out: {file}: {reason}", err=True)
-    click.echo(summary(ground, given))
+    click.echo(summary(labelled, given))
     if corrections.moved or corrections.removed:
-        moved = sum(each.label != each.of.label for each in ground.chosen)
+        moved = sum(each.label != each.of.label for each in labelled.chosen)
         click.echo(f"Corrections kept: {moved} moved, {len(corrections.removed)} removed.")
     click.echo(f"\nWrote {out}. Look at {out}/contact_sheet_*.png; move or delete wrong patches.")
     click.echo(f"Next: terrain-odometry train {shlex.quote(str(out))} --out terrain.model")

@@ -67,14 +67,14 @@ def _bad(message: str) -> click.BadParameter:
 FEW_PLACES = 5  # as many folds has the cross-validation of `train`
 
 
-def summary(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> str:
+def summary(labelled: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> str:
     """Squares of each run, patches of each class, and what is too little for training."""
-    return "\n".join([*_runs(ground, given), "", *_classes(ground), *_notes(ground, given)])
+    return "\n".join([*_runs(labelled, given), "", *_classes(labelled), *_notes(labelled, given)])
 
 
-def _runs(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
-    for (folder, seen), of in zip(ground.seen.items(), given, strict=True):
-        left_out = ground.left_out[folder]
+def _runs(labelled: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
+    for (folder, seen), of in zip(labelled.seen.items(), given, strict=True):
+        left_out = labelled.left_out[folder]
         counts = ", ".join(f"{count} {why}" for why, count in sorted(left_out.items()))
         yield (
             f"{folder}: {seen} squares in images and then driven over, labelled by "
@@ -82,36 +82,36 @@ def _runs(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterato
         )
 
 
-def _classes(ground: "LabelledTerrain") -> Iterator[str]:
-    scale = ground.scale
+def _classes(labelled: "LabelledTerrain") -> Iterator[str]:
+    scale = labelled.scale
     yield (
-        f"{len(ground.chosen)} patches of {scale.size_px} px, {scale.metres_per_pixel:g} m per "
+        f"{len(labelled.chosen)} patches of {scale.size_px} px, {scale.metres_per_pixel:g} m per "
         f"pixel, {scale.side_m:.2f} m wide:"
     )
-    patches = Counter(each.label for each in ground.chosen)
-    places = _places(ground)
+    patches = Counter(each.label for each in labelled.chosen)
+    places = _places(labelled)
     width = max(map(len, patches))
     for label in sorted(patches):
         yield f"  {label:{width}}  {patches[label]:5d} of {places[label]} places"
 
 
-def _notes(ground: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
-    known = {name for each in ground.chosen for name in (each.label, each.of.label)}
+def _notes(labelled: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
+    known = {name for each in labelled.chosen for name in (each.label, each.of.label)}
     if lost := sorted({name for of in given for name in of.terrains} - known):
         yield (
             f"Note: no patch shows {', '.join(lost)}: given outside of the recorded time, too "
             "briefly, or where no image shows what was driven over"
         )
-    few = [f"{label} ({count})" for label, count in _places(ground).items() if count < FEW_PLACES]
+    few = [f"{label} ({count})" for label, count in _places(labelled).items() if count < FEW_PLACES]
     if few:
         yield (
             f"Note: patches of few places: {', '.join(few)}; `train` needs 2 a class, and tests "
             f"itself well with {FEW_PLACES} or more"
         )
-    if len(_places(ground)) == 1:
+    if len(_places(labelled)) == 1:
         yield "Note: all patches are of one class; `train` needs another one, of another run"
 
 
-def _places(ground: "LabelledTerrain") -> dict[str, int]:
-    pairs = sorted({(each.label, each.photo_id) for each in ground.chosen})
+def _places(labelled: "LabelledTerrain") -> dict[str, int]:
+    pairs = sorted({(each.label, each.photo_id) for each in labelled.chosen})
     return dict(Counter(label for label, _ in pairs))

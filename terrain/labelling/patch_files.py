@@ -65,7 +65,7 @@ def _caption(path: str) -> str:
 
 def write_labelled_patches(
     folder: Path,
-    ground: LabelledTerrain,
+    labelled: LabelledTerrain,
     corrections: Corrections | None = None,
     *,
     show_progress: bool = False,
@@ -76,7 +76,7 @@ def write_labelled_patches(
     ----------
     folder : Path
         Readable by `train` afterwards.
-    ground : LabelledTerrain
+    labelled : LabelledTerrain
     corrections : Corrections, optional
         Names that were removed are kept in the manifest, so that they stay removed.
     show_progress : bool
@@ -107,8 +107,8 @@ def write_labelled_patches(
     """
     unusable: dict[str, str] = {}
     written: list[ChosenSquare] = []
-    bar = tqdm(total=len(ground.chosen), desc="patches", disable=None if show_progress else True)
-    for squares, patches in _patches(ground, unusable):
+    bar = tqdm(total=len(labelled.chosen), desc="patches", disable=None if show_progress else True)
+    for squares, patches in _patches(labelled, unusable):
         for each, patch in zip(squares, patches, strict=True):
             with atomic_write(folder / _path(each)) as part:
                 part.write_bytes(_png(patch))
@@ -119,7 +119,7 @@ def write_labelled_patches(
         file, reason = next(iter(unusable.items()))
         raise ImageError(f"none of {len(unusable)} images can be used: {file}: {reason}")
     removed = sorted(corrections.removed) if corrections else []
-    _write_manifest(folder / "manifest.csv", written, removed, ground.scale.metres_per_pixel)
+    _write_manifest(folder / "manifest.csv", written, removed, labelled.scale.metres_per_pixel)
     for label in sorted({each.label for each in written}):
         paths = [_path(each) for each in written if each.label == label]
         write_contact_sheet(folder / f"contact_sheet_{label}.png", folder, paths)
@@ -127,11 +127,11 @@ def write_labelled_patches(
 
 
 def _patches(
-    ground: LabelledTerrain, unusable: dict[str, str]
+    labelled: LabelledTerrain, unusable: dict[str, str]
 ) -> Iterator[tuple[list[ChosenSquare], list[ByteImage]]]:
     """The squares of each image and their patches; each image is read once."""
-    by_image = sorted(ground.chosen, key=_image)
-    scale = ground.scale.metres_per_pixel
+    by_image = sorted(labelled.chosen, key=_image)
+    scale = labelled.scale.metres_per_pixel
     for file, group in groupby(by_image, key=_image):
         squares = list(group)
         run = squares[0].of.run

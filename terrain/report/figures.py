@@ -33,7 +33,7 @@ def in_force(result: RunResult) -> tuple[Stretch, ...]:
 def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
     """The paths over the terrain along the true, the measured or the estimated one."""
     result, paths = lines.result, lines.paths()
-    ground = result.replay.trajectory() if result.reference is None else result.reference
+    driven = result.replay.trajectory() if result.reference is None else result.reference
     true = true_stretches(result)
     places = np.concatenate([path.poses[:, :2] for path in paths.values()])
     spans = np.nanmax(places, axis=0) - np.nanmin(places, axis=0)
@@ -42,7 +42,7 @@ def path_picture(lines: ReportLines, tints: Tints, folder: Path) -> Picture:
     def draw(figure: Figure) -> None:
         axes = figure.add_axes((_LEFT, 0.6 / height_in, _RIGHT - _LEFT, 1 - 0.8 / height_in))
         plot_paths(axes, paths, lines.styles())
-        plot_ground(axes, ground, true or in_force(result), tints)
+        plot_ground(axes, driven, true or in_force(result), tints)
 
     along = "the true terrain" if true else "the terrain in force"
     return Picture(

@@ -2,15 +2,15 @@
 
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.gap_real [--out gap_real] [--only WORD ...]
 
-Four kinds of cases, on recordings with a pose, each ground as INDEX.csv names it:
+Four kinds of cases, on recordings with a pose, each terrain as INDEX.csv names it:
 
 - real: nothing was done to the data. The Husky on tile with a base that is given x_icr = 0; the
   Warthog on the steepest grass recorded; the Marmotte, one sequence each to calibrate, measure
   and evaluate;
-- withheld: a ground that the calibration never saw, joined with one that it did; stamps of the
+- withheld: a terrain that the calibration never saw, joined with one that it did; stamps of the
   poses late by 0.15 s; roll and pitch taken out of a run on a slope;
 - control: each recording by halves, calibrated on one half and measured on the other, both ways
-  round. The robot, ground and hour are the same, so that a name is a false one, or an effect that
+  round. The robot, terrain and hour are the same, so that a name is a false one, or an effect that
   came up within minutes;
 - changed: the same first halves, and second halves changed by hand (`gap_real_changes`).
 
