@@ -116,6 +116,7 @@ def refusals(track: ModeTrack, sure: float) -> dict[str, BoolArray]:
         "contradicted": track.contradicted,
         "gain": None if track.gain is None else track.gain.off,
         "centre": track.centre,
+        "drift": track.drifts,
         "headings": track.headings_disagree,
         "blocked": track.blocked,
     }

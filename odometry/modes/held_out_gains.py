@@ -51,6 +51,11 @@ def gain_errors(
         ).reshape(-1, 2)
         for place, name in enumerate(modes.names)
     ]
+    return spread_and_power(by_mode)
+
+
+def spread_and_power(by_mode: Sequence[FloatArray]) -> tuple[FloatArray, float] | None:
+    """Spread (M,) and power, of errors and information (K, 2) of the windows of each mode."""
     every = np.concatenate(by_mode)
     if len(every) < LEAST_WINDOWS:
         return None

@@ -9,8 +9,16 @@ from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.independent_runs import check_no_run_twice
 from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
+from odometry.modes.held_out_turns import turn_errors
 from odometry.modes.mode_windows import stretches_by_label
-from odometry.modes.response import Record, errors_of, fitted_response, gain_spread, growing_power
+from odometry.modes.response import (
+    Record,
+    Response,
+    errors_of,
+    fitted_response,
+    gain_spread,
+    growing_power,
+)
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
 
@@ -78,6 +86,7 @@ def identify_velocity_modes(
     measurement = np.full((len(names), 2), FOLLOWS_SIGMA**2)
     lasting_s = []
     speed_power, spread = np.zeros((len(names), 2)), np.zeros(len(names))
+    of_turns: dict[str, Response] = {}
     for place, name in enumerate(names):
         for row in measured_rows:
             response = fitted_response(pooled if shared else records[name], row)
@@ -89,11 +98,14 @@ def identify_velocity_modes(
                 speed_power[place] = growing_power(records[name], row, response, by=OMEGA)
             else:
                 spread[place] = gain_spread(records[name], row, response)
+                of_turns[name] = response
     if common_noise:
         measurement[:] = np.median(measurement, axis=0)
     process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2
     errors_last_s = float(np.median(lasting_s))
     fastest_m_s = max(float(np.abs(record.table[:, 2:]).max()) for record in pooled)
+    # one model for all errs on each terrain by what that differs from the others
+    turn_spread = None if shared else turn_errors(records, OMEGA, of_turns)
     return VelocityModes(
         names,
         blocks[..., :2],
@@ -104,6 +116,7 @@ def identify_velocity_modes(
         fastest_m_s,
         speed_power if SPEED in measured_rows else None,
         spread,
+        *(turn_spread or (None, None)),
     )
 
 

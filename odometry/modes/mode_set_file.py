@@ -57,7 +57,12 @@ MODE = {
     "traction": (Key("gains", (2, 3, 5)), Key("lag_s", (), "0 or more")),
 }
 OPTIONAL_MODE: dict[str, tuple[Key, ...]] = {
-    "velocity": (Key("speed_power", (2,), "0 or more"), Key("gain_spread", (), "0 or more")),
+    "velocity": (
+        Key("speed_power", (2,), "0 or more"),
+        Key("gain_spread", (), "0 or more"),
+        Key("turn_spread", (2,), "0 or more"),
+        Key("turn_power", (2,), "0 or more"),
+    ),
     "traction": (
         Key("gain_spread", (), "0 or more"),
         Key("centre_spread", (2,), "0 or more"),

@@ -50,6 +50,8 @@ class ModeTrack:
         Where the robot turns more or less than the most probable mode does; without it nowhere.
     centre : (N,) or None
         Where the robot turns about another point than the most probable mode; else nowhere.
+    drifts : (N,) or None
+        Where the robot drifts in one direction of the world; without it nowhere.
     scatter : (N,) or None
         How many times as far poses scatter as in the runs of identification; NaN: undetermined.
     felt : (N, M) or None
@@ -86,6 +88,7 @@ class ModeTrack:
     contradicted: BoolArray | None = None
     gain: GainCheck | None = None
     centre: BoolArray | None = None
+    drifts: BoolArray | None = None
     scatter: FloatArray | None = None
     felt: FloatArray | None = None
     blocked: BoolArray | None = None

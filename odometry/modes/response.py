@@ -62,7 +62,7 @@ def fitted_response(records: Sequence[Record], row: int) -> Response:
     """
 
     def cost(log_rate: float) -> float:
-        return _projected(records, row, float(np.exp(log_rate)))[1]
+        return gains_at(records, row, float(np.exp(log_rate)))[1]
 
     grid = np.linspace(np.log(SLOWEST_HZ), np.log(FASTEST_HZ), 25)
     best = int(np.argmin([cost(log_rate) for log_rate in grid]))
@@ -71,7 +71,7 @@ def fitted_response(records: Sequence[Record], row: int) -> Response:
         cost, bounds=bounds, method="bounded", options={"xatol": LOG_RATE_TOLERANCE}
     ).x
     rate_hz = float(np.exp(log_rate))
-    return Response(rate_hz, _projected(records, row, rate_hz)[0])
+    return Response(rate_hz, gains_at(records, row, rate_hz)[0])
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def gain_spread(records: Sequence[Record], row: int, response: Response) -> floa
 
 def _gains_of_turns(record: Record, row: int, response: Response) -> Iterator[tuple[float, float]]:
     """Of each turn to one side the gain, and the time integral of what is predicted, squared."""
-    inputs, target = _simulated(record, row, response.rate_hz)
+    inputs, target = simulated(record, row, response.rate_hz)
     predicted = inputs @ response.gains
     side = np.where(np.abs(predicted) > LEAST_TURN_RAD_S, np.sign(predicted), 0.0)
     changes = np.flatnonzero(np.diff(side)) + 1
@@ -169,9 +169,9 @@ def _block_size(step_s: float) -> int:
     return max(1, round(BLOCK_S / step_s))
 
 
-def _projected(records: Sequence[Record], row: int, rate_hz: float) -> tuple[FloatArray, float]:
+def gains_at(records: Sequence[Record], row: int, rate_hz: float) -> tuple[FloatArray, float]:
     """Gains (3,) of least squares at a rate, and the mean square that they leave."""
-    parts = [_simulated(record, row, rate_hz) for record in records]
+    parts = [simulated(record, row, rate_hz) for record in records]
     table = np.concatenate([inputs for inputs, _ in parts])
     wanted = np.concatenate([target for _, target in parts])
     normal = table.T @ table
@@ -181,11 +181,11 @@ def _projected(records: Sequence[Record], row: int, rate_hz: float) -> tuple[Flo
 
 
 def _left(record: Record, row: int, response: Response) -> FloatArray:
-    inputs, target = _simulated(record, row, response.rate_hz)
+    inputs, target = simulated(record, row, response.rate_hz)
     return np.asarray(target - inputs @ response.gains)
 
 
-def _simulated(record: Record, row: int, rate_hz: float) -> tuple[FloatArray, FloatArray]:
+def simulated(record: Record, row: int, rate_hz: float) -> tuple[FloatArray, FloatArray]:
     """Answers to each input (N, 3), and what they are to explain (N,).
 
     What the unknown value at the start leaves behind is projected out of both.

@@ -18,10 +18,12 @@ from odometry.modes.innovation_test import (
 )
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
+from odometry.modes.place_drift import place_drifts
 from odometry.modes.pose_scatter import pose_scatter
 from odometry.modes.response import BLOCK_S
 from odometry.modes.travel_check import travel_check
 from odometry.modes.turn_agreement import turns_disagree
+from odometry.modes.turn_gain_check import turn_gain_check
 from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (6.0, 12.0)
@@ -41,7 +43,8 @@ def contradictions(
 
     Of modes that measure velocities: equal modes, turns, travel, turns between two modes and
     headings at odds. Of those that measure poses: turns between two modes, gains and turning
-    centres that are off, where one was contradicted not long ago, and how far poses scatter.
+    centres that are off, drifts of places, where one was contradicted not long ago, and how far
+    poses scatter.
     """
     modes = mode_set.modes
     believed = biases_rad_s, left.independent, config
@@ -51,13 +54,16 @@ def contradictions(
             "contradicted": contradicted_lately(left, config),
             "gain": gain_check(signals, modes, left.leading, biases_rad_s, config),
             "centre": centre_check(signals, modes, left.leading, config),
+            "drifts": place_drifts(left, config),
             "scatter": pose_scatter(left),
         }
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
+    off = turns_are_off(left, before, config)
+    gains_are_off = turn_gain_check(signals, modes, left.leading, biases_rad_s, config)
     return {
         "alike": similar_modes(signals, modes, left.leading, config),
-        "turns_are_off": turns_are_off(left, before, config),
+        "turns_are_off": off if gains_are_off is None else off | gains_are_off,
         "travel": travel_check(signals, modes, config),
         "between": between_modes(signals, modes, *believed),
         "headings_disagree": turns_disagree(signals, modes, left.leading, biases_rad_s, config),

@@ -50,6 +50,11 @@ class VelocityModes:
     gain_spread : (M,) or None
         Standard deviation of the yaw rate for given treads from one turn to the next, as a share of
         it. None of sets of versions before 0.18.
+    turn_spread, turn_power : (M, 2) or None
+        Of the error of a mode's yaw rate gain on turns that it was not identified from, over a
+        short and a long time of turning: standard deviation as a share, and what adds to its square
+        by the information of a window [rad^2/s] (`held_out_turns`). None of sets of versions before
+        0.36.
     """
 
     names: tuple[str, ...]
@@ -61,6 +66,8 @@ class VelocityModes:
     fastest_m_s: float = np.inf
     speed_power: FloatArray | None = None
     gain_spread: FloatArray | None = None
+    turn_spread: FloatArray | None = None
+    turn_power: FloatArray | None = None
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()

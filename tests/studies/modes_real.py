@@ -40,6 +40,7 @@ TESTS = (
     "contradicted",
     "gain",
     "centre",
+    "drifts",
 )
 KINDS: Mapping[str, Mapping[str, bool]] = {
     "model and noise of each ground": {},

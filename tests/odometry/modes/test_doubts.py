@@ -50,6 +50,7 @@ def cases():
         ({"blocked": turns}, UNDETERMINED, "the robot does not turn between", "look whether"),
         ({"gain": gain}, UNDETERMINED, "turns by 5 % more than on a, which", "identify a mode"),
         ({"centre": turns}, UNDETERMINED, "turns about another point", "identify a mode"),
+        ({"drifts": turns}, UNDETERMINED, "drifts in one direction of the world", "look whether"),
         ({"contradicted": turns}, UNDETERMINED, "the motion contradicted the", "identify a mode"),
         ({"headings_disagree": turns}, UNDETERMINED, "headings turn apart by", "check the gyro"),
         ({"gyroscope": off}, NONE_OF_THESE, "the gyroscope reads 1.21 times", "check the gyro"),
