@@ -60,7 +60,7 @@ def turn_gain_check(
     off = np.zeros(len(signals), dtype=np.bool_)
     for mode in np.unique(leading):
         leads, said = leading == mode, predicted[:, mode]
-        more, less = LEAST_WAY * _ways(modes, mode)
+        more, less = LEAST_WAY * _ways(modes, mode, config.alike_sigmas)
         errors = measured - biases_rad_s - said
         for place, counted in enumerate((errors, np.where(leads, errors, np.nan))):
             clock_s, window_s = turning_clock(said, counted, lasts_s), TURNED_S[place]
@@ -74,16 +74,17 @@ def turn_gain_check(
     return off
 
 
-def _ways(modes: VelocityModes, mode: int) -> FloatArray:
-    """To the next mode that turns more, and less (2,), as shares; 0 of a single mode.
+def _ways(modes: VelocityModes, mode: int, alike_sigmas: float) -> FloatArray:
+    """To the next mode that turns more, and less (2,), as shares; as far as on the other side else.
 
-    Where there is none on a side, as far as on the other.
+    Modes that are equal in motion are no next ones; infinite where there is none.
     """
-    gains = modes.turn_gains()[:, 0]
-    away = np.delete(gains, mode) / gains[mode] - 1
-    ways = np.array([np.abs(away[side * away >= 0]).min(initial=np.inf) for side in (1, -1)])
-    nearest = ways.min()
-    return np.where(np.isfinite(ways), ways, nearest if np.isfinite(nearest) else 0.0)
+    gains, lasting = modes.turn_gains()[:, 0], modes.lasting_share()
+    away = gains / gains[mode] - 1
+    spread = np.hypot(np.maximum(lasting, lasting[mode]), TOLERANCE)
+    away = away[np.abs(away) > alike_sigmas * spread]
+    ways = np.array([np.abs(away[side * away > 0]).min(initial=np.inf) for side in (1, -1)])
+    return np.where(np.isfinite(ways), ways, ways.min())
 
 
 def _settled(signals: Signals) -> tuple[FloatArray, FloatArray]:

@@ -71,10 +71,15 @@ def test_what_is_near_a_mode_by_the_way_to_the_next_one_contradicts_nothing():
     assert not checked(GAIN * (1 + off_by), less).any()
 
 
+def test_a_mode_that_is_equal_in_motion_is_no_next_one():
+    assert checked(GAIN * 1.1, set_of(turns=(GAIN, GAIN * 1.05))).any()
+    assert not checked(GAIN * 1.1, set_of(turns=(GAIN, GAIN * 1.01))).any()
+
+
 def test_a_bias_of_the_gyroscope_is_no_gain():
     """It is a twelfth of a slow turn."""
-    slow = signals_of(GAIN, side=0.1)
-    slow.measured[:, -1] += 0.005
+    slow = signals_of(GAIN, side=0.09)
+    slow.measured[:, -1] += 0.0042
     assert not checked(GAIN, signals=slow).any()
     slow.measured[:, -1] += 0.02
     assert checked(GAIN, signals=slow).any()
