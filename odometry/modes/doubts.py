@@ -13,30 +13,6 @@ from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported
 MOST_SCATTER = 2.0  # times that of identification: other faults of poses and terrains reach 1.5
-OTHER_SET = "identify a mode for this terrain, load or set of wheels, and check "
-CONTRADICTED_BY = (
-    (
-        "turns_are_off",
-        "the robot turns by more or by less than the most probable mode predicts",
-        "identify a mode for this terrain and load, and check the counts of both treads",
-    ),
-    (
-        "contradicted",
-        "the motion contradicted the most probable mode, then or not long before,",
-        OTHER_SET + "poses, gyroscope and both treads",
-    ),
-    (
-        "centre",
-        "the robot turns about another point than on the most probable mode",
-        OTHER_SET + "the poses",
-    ),
-    (
-        "drifts",
-        "the robot drifts in one direction of the world, which no mode does,",
-        "look whether it drove on a slope or was pushed or pulled, and check the poses",
-    ),
-)
-"""Field of the track, reason and remedy."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +72,7 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
         )
     found += _of_motion(followed, undetermined)
     found += _of_gain(followed, undetermined)
+    found += _of_drift(followed, undetermined)
     said = [one for one in found if one.share >= LEAST_DOUBT]
     return tuple(sorted(said, key=lambda one: -one.share))
 
@@ -104,11 +81,37 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
     """Turns and measured travel that contradict the most probable mode."""
     track, found = followed.last_track, []
     sure = track.probabilities.max(axis=1) >= followed.config.sure
-    for name, reason, remedy in CONTRADICTED_BY:
-        refused = getattr(track, name)
-        if refused is not None:
-            share = _share(followed, refused & sure & undetermined)
-            found.append(Doubt(f"{reason} for {round(100 * share)} % of the time", remedy, share))
+    if track.turns_are_off is not None:
+        off = track.turns_are_off & sure & undetermined
+        found.append(
+            Doubt(
+                "the robot turns by more or by less than the most probable mode predicts for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain and load, and check the counts of both treads",
+                _share(followed, off),
+            )
+        )
+    if track.contradicted is not None:
+        off = track.contradicted & sure & undetermined
+        found.append(
+            Doubt(
+                "the motion contradicted the most probable mode, then or not long before, for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain, load or set of wheels, and check poses, "
+                "gyroscope and both treads",
+                _share(followed, off),
+            )
+        )
+    if track.centre is not None:
+        off = track.centre & sure & undetermined
+        found.append(
+            Doubt(
+                "the robot turns about another point than on the most probable mode for "
+                f"{round(100 * _share(followed, off))} % of the time",
+                "identify a mode for this terrain, load or set of wheels, and check the poses",
+                _share(followed, off),
+            )
+        )
     if track.scatter is not None and (track.scatter > MOST_SCATTER).any():
         off = track.scatter > MOST_SCATTER
         found.append(
@@ -173,6 +176,22 @@ def _of_gain(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
             f"{round(100 * _share(followed, off))} % of the time",
             "identify a mode for this terrain, load or set of wheels, and check both treads",
             _share(followed, off),
+        )
+    ]
+
+
+def _of_drift(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
+    """Places that go in one direction of the world."""
+    track = followed.last_track
+    if track.drifts is None:
+        return []
+    share = _share(followed, track.drifts & undetermined)
+    return [
+        Doubt(
+            "the robot drifts in one direction of the world, which no mode does, for "
+            f"{round(100 * share)} % of the time",
+            "look whether it drove on a slope or was pushed or pulled, and check the poses",
+            share,
         )
     ]
 

@@ -20,11 +20,7 @@ def turning_clock(
 ) -> FloatArray:
     """For how long (N,) the robot has turned, where it was measured: on straights it stands still.
 
-    Parameters
-    ----------
-    predicted, errors : (N,)
-        Predicted yaw rate, and measured less predicted, NaN where it does not count [rad/s].
-    lasts_s : (N,) or float
+    By predicted yaw rates (N,) and errors (N,), NaN where they do not count [rad/s].
     """
     turns: BoolArray = np.isfinite(errors) & (np.abs(predicted) > LEAST_RAD_S)
     return np.asarray(np.cumsum(np.where(turns, lasts_s, 0.0)))
@@ -37,21 +33,8 @@ def turn_errors(
 
     Every record of a mode (each quarter of its only one) is predicted by gains of the others, and
     by those of the mode: the first err by more than the mode does on a new drive, since they are of
-    fewer drives, and the second by less.
-
-    Parameters
-    ----------
-    records : Mapping of sequences of Record
-        By mode.
-    row : int
-        The yaw rate among the columns of a record.
-    responses : Mapping of Response
-        Of each mode.
-
-    Returns
-    -------
-    ((M, 2), (M, 2)) or None
-        By TURNED_S, as a share of the gain, and [rad^2/s]; None where too little turns.
+    fewer drives, and the second by less. By TURNED_S, as a share of the gain and [rad^2/s]; None
+    where too little turns. `row` is the yaw rate among the columns of a record.
     """
     found = []
     for turned_s in TURNED_S:
@@ -59,8 +42,7 @@ def turn_errors(
         for name, response in responses.items():
             parts = _parts(records[name])
             out.append(np.concatenate(list(_held_out(parts, row, response.rate_hz, turned_s))))
-            pairs = [_windows(one, row, response, turned_s) for one in parts]
-            own.append(np.concatenate(pairs))
+            own.append(np.concatenate([_windows(of, row, response, turned_s) for of in parts]))
         both = spread_and_power(out), spread_and_power(own)
         if both[0] is None or both[1] is None:
             return None

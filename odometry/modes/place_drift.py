@@ -19,13 +19,8 @@ PART_S, PARTS = 2.0, 7
 def place_drifts(innovations: Innovations, config: ModesConfig | None = None) -> BoolArray:
     """Where (N,) what is left of the places goes in one direction over the last PARTS.
 
-    By the deviation of the parts among each other, or 1 where that is less.
-
-    Parameters
-    ----------
-    innovations : Innovations
-        Of traction modes.
-    config : ModesConfig, optional
+    By the deviation of the parts among each other, or 1 where that is less. The innovations are
+    those of traction modes.
     """
     config, stamps_s = config or ModesConfig(), innovations.stamps_s
     places = innovations.of_leading[:, PLACE]

@@ -34,23 +34,9 @@ def turn_gain_check(
     """Where (N,) the gain of the last turns is off by more than the most probable mode's may be.
 
     Over the first of TURNED_S of turning whichever mode led, and over the second while this one
-    did: a turn may begin on one terrain and end on another.
-
-    Parameters
-    ----------
-    signals : Signals
-        Measured where it depends on the modes.
-    modes : VelocityModes
-    leading : (N,)
-        The most probable mode.
-    biases_rad_s : (N,)
-        Of the filters.
-    config : ModesConfig, optional
-
-    Returns
-    -------
-    (N,) or None
-        None of a set that does not state how far the gains of turns are off.
+    did: a turn may begin on one terrain and end on another. `signals` are measured where they
+    depend on the modes, `leading` (N,) is the most probable one, `biases_rad_s` (N,) are those of
+    the filters. None of a set that does not state how far the gains of turns are off.
     """
     config = config or ModesConfig()
     if modes.turn_spread is None or modes.turn_power is None:

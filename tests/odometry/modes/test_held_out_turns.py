@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.modes.held_out_turns import TURNED_S, turn_errors, turning_clock
+from odometry.modes.held_out_turns import TURNED_S, turn_errors
 from odometry.modes.identify_velocity import OMEGA, identify_velocity_modes
 from odometry.modes.response import Record, Response, fitted_response, simulated
 from tests.odometry.modes.mode_examples import run_of
@@ -55,11 +55,6 @@ def test_a_record_that_does_not_turn_determines_nothing():
     straight = record_of(rng)
     straight.table[:, 1], straight.table[:, 3] = 0.0, straight.table[:, 2]
     assert turn_errors({"ice": [straight] * 2}, OMEGA, {"ice": ANSWER}) is None
-
-
-def test_the_clock_stands_on_straights_and_where_nothing_was_measured():
-    predicted, errors = np.array([0.3, 0.3, 0.0, 0.3, -0.3]), np.array([0.0, np.nan, 0, 0, 0])
-    np.testing.assert_allclose(turning_clock(predicted, errors, 0.5), [0.5, 0.5, 0.5, 1.0, 1.5])
 
 
 def test_identified_modes_state_it_unless_they_share_a_model():

@@ -4,12 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.modes.answers import named_modes
 from odometry.modes.innovation_test import Innovations
-from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.place_drift import PART_S, PARTS, place_drifts
 from odometry.modes.track import follow_modes
-from tests.odometry.modes.mode_examples import run_of, track, traction_set
+from tests.odometry.modes.mode_examples import run_of, traction_set
 
 STEP_S, SIZE = 0.1, 400
 STAMPS_S = STEP_S * np.arange(SIZE)
@@ -35,9 +33,12 @@ def turned(size, period_s):
 
 
 def test_a_drift_shows_where_all_parts_are_known():
-    off = found(white() + DRIFT)
+    places = white() + DRIFT
+    off = found(places)
     assert off[STAMPS_S > NEEDED_S].mean() > 0.9
     assert not off[STAMPS_S < NEEDED_S - PART_S].any()
+    places[(STAMPS_S > 20.0) & (STAMPS_S < 20.0 + 2 * PART_S)] = np.nan
+    assert not found(places)[(STAMPS_S > 20.0 + 2 * PART_S) & (STAMPS_S < 20.0 + NEEDED_S)].any()
 
 
 def test_noise_is_no_drift():
@@ -52,23 +53,6 @@ def test_innovations_that_last_for_a_part_are_no_drift_however_large():
     size = round(PART_S / STEP_S)
     held = [np.repeat(white(seed)[::size], size, axis=0) for seed in range(20)]
     assert np.mean([found(one).mean() for one in held]) < 0.15
-
-
-def test_a_part_without_poses_says_nothing():
-    places = white() + DRIFT
-    begins_s, ends_s = 15.0, 15.0 + 2 * PART_S
-    places[(begins_s < STAMPS_S) & (ends_s > STAMPS_S)] = np.nan
-    off = found(places)
-    assert off[np.searchsorted(STAMPS_S, begins_s) - 1]
-    assert not off[(ends_s < STAMPS_S) & (begins_s + NEEDED_S > STAMPS_S)].any()
-
-
-def test_a_mode_that_drifts_is_not_named():
-    known = track(["a"] * 2, ["a"] * 2)
-    assert list(named_modes(replace(known, drifts=np.array([False, True])), 0.9)) == [
-        "a",
-        UNDETERMINED,
-    ]
 
 
 def test_a_robot_that_slides_is_followed_so():

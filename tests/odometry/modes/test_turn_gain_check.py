@@ -47,15 +47,10 @@ def checked(gain, mode_set=None, leading=0, signals=None):
     return turn_gain_check(signals or signals_of(gain), modes, rows, np.zeros(SIZE))
 
 
-def test_a_turn_within_the_spread_contradicts_nothing():
-    for gain in (GAIN, GAIN * 1.02, GAIN * 0.98):
-        assert not checked(gain).any()
-
-
 @pytest.mark.parametrize("share", [-0.1, 0.1])
 def test_a_turn_beside_the_mode_contradicts_it_on_the_straight_after_it(share):
-    off = checked(GAIN * (1 + share))
-    assert off[STAMPS_S > 1.0].all()
+    assert checked(GAIN * (1 + share))[STAMPS_S > 1.0].all()
+    assert not checked(GAIN * (1 + share / 5)).any()
 
 
 def test_a_mode_whose_turns_differ_more_may_be_off_by_more():
@@ -110,16 +105,6 @@ def test_what_is_measured_after_lost_rows_says_nothing():
     assert checked(GAIN, signals=signals).any()
 
 
-def test_a_spike_is_no_turn():
-    signals = signals_of(GAIN)
-    signals.measured[::10, -1] += 10.0
-    assert not checked(GAIN, signals=signals).any()
-
-
-def test_a_set_without_a_spread_has_no_such_test():
-    assert checked(GAIN * 1.3, velocity_set((GAIN, OTHER))) is None
-
-
 def test_a_terrain_between_two_modes_is_not_named_after_its_turn():
     both_sides = np.where(STAMPS_S.astype(int) % 2, 1.0, -1.0)  # a bias does not explain it
     between = signals_of(GAIN * 1.1, both_sides)
@@ -135,10 +120,11 @@ def test_a_terrain_between_two_modes_is_not_named_after_its_turn():
     assert set(named_modes(found, 0.9)[after]) == {UNDETERMINED}
 
 
-def test_a_set_keeps_its_spread(tmp_path):
+def test_a_set_keeps_its_spread_and_an_earlier_one_has_no_such_test(tmp_path):
     write_mode_set(tmp_path / "set.toml", set_of())
     again = read_mode_set(tmp_path / "set.toml").modes
     np.testing.assert_array_equal(again.turn_spread, np.full((2, 2), SPREAD))
     np.testing.assert_array_equal(again.turn_power, np.full((2, 2), POWER))
-    write_mode_set(tmp_path / "old.toml", velocity_set())
-    assert read_mode_set(tmp_path / "old.toml").modes.turn_spread is None
+    write_mode_set(tmp_path / "old.toml", velocity_set((GAIN, OTHER)))
+    old = read_mode_set(tmp_path / "old.toml")
+    assert checked(GAIN * 1.3, old) is None
