@@ -18,6 +18,7 @@ from odometry.checks.findings.unreadable import no_run_folder, unreadable
 from odometry.checks.imu.attitude import attitude
 from odometry.checks.imu.gyroscope import gyroscope
 from odometry.checks.imu.gyroscope_by_poses import gyroscope_scale
+from odometry.checks.imu.rate_wander import headings_wander
 from odometry.checks.imu.turning import turning
 from odometry.checks.poses.coarse_yaw import coarse_yaw
 from odometry.checks.poses.compass_error import bent
@@ -97,6 +98,7 @@ CHECKS: tuple[Check, ...] = (
     late_positions,
     poses,
     gyroscope,
+    headings_wander,
     gyroscope_scale,
     pose_outages,
     attitude,

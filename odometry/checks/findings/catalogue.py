@@ -26,6 +26,7 @@ CATALOGUE: dict[str, str] = {
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",
     "scale": "tread speeds or positions scaled",
+    "scale_drifts": "a scale of the positions that drifts, or treads that slip more and more",
     "slip": "the robot moves far less than its treads, not constantly",
     "slip_in_turns": "the robot turns far less than its treads say",
     "treads_swapped": "left and right exchanged",
@@ -110,6 +111,7 @@ CATALOGUE: dict[str, str] = {
     "yaw_is_treads": "yaw computed from the treads, beside measured positions",
     "turns_recorded_once": "treads and yaw rate, one of which was computed from the other",
     "gyroscope_bias": "a bias of the yaw rate",
+    "headings_wander": "a bias of the gyroscope that wanders, or a heading of the poses",
     "gyroscope_unit": "yaw rate in degrees per second",
     "gyroscope_scale": "yaw rate scaled by some percent",
     "gyroscope_reversed": "yaw rate with the wrong sign",

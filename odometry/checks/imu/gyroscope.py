@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.outliers import spikes
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.imu.rate_wander import rate_wander
 from odometry.windows.spans import constant_spans
 
 LEAST_BIAS_RAD_S = 0.003
@@ -42,6 +43,8 @@ def _bias(evidence: Evidence) -> Iterator[Finding]:
     if found is None or drifts_at_rest(evidence):  # rest and poses contradict each other
         return
     bias, sigma, how = found
+    if abs(bias) < LARGE_BIAS_RAD_S and rate_wander(evidence) is not None:
+        return  # there is no one bias
     if abs(bias) < LEAST_BIAS_RAD_S or abs(bias) < CERTAIN * sigma:
         return
     large, at_rest = abs(bias) > LARGE_BIAS_RAD_S, how.startswith("while stationary")

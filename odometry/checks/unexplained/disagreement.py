@@ -30,18 +30,24 @@ from odometry.checks.unexplained.position_differences import (
 )
 from odometry.checks.unexplained.repeated_rows import repeated_rows
 from odometry.checks.unexplained.scale_drift import scale_drifts
+from odometry.checks.unexplained.way_drift import way_drifts
 
 
 def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[Finding]:
-    """One warning where sensors differ and nothing `found` explains it."""
+    """One warning where sensors differ and nothing `found` explains it; a drift has a name."""
     if any(finding.level is not Level.NOTE for finding in found):
         return
-    seen = [*lasting_disagreements(evidence), uneven_map(evidence), peaks_often(evidence)]
+    place = uneven_map(evidence)
+    seen = [*lasting_disagreements(evidence), place, peaks_often(evidence)]
     seen += [moments_of_spin(evidence), play(evidence)]
     if not any(finding.name == "slip_episodes" for finding in found):
         seen.append(positions_apart(evidence))
-    if any(seen):
-        yield disagreement("; ".join(filter(None, seen)))
+    words = [word for word in seen if word]
+    drift = list(way_drifts(evidence, place)) if words in ([], [place]) else []
+    if drift or not words:
+        yield from drift
+    else:
+        yield disagreement("; ".join(words))
 
 
 @once

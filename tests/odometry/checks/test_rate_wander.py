@@ -1,0 +1,83 @@
+"""A gyroscope whose bias wanders, headings of poses that do, and what is neither."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.findings.finding import Level
+from odometry.checks.recording import check_recording
+from tests.odometry.checks.faulty import gyroscope, put, treads
+from tests.odometry.checks.test_other_robots import drive, winding
+
+BIASES = {
+    "a minute and a half": lambda at_s: 0.02 * np.sin(at_s / 15),
+    "warming up": lambda at_s: 0.04 * at_s / 120,
+}
+
+
+def named(run):
+    return {finding.name: finding for finding in check_recording(run).findings}
+
+
+def turned_map(run, rate_rad_s):
+    """Positions and yaw that turn together by a rate (M,), as of SLAM without loops."""
+    angle = np.append(0.0, np.cumsum(rate_rad_s[:-1] * np.diff(run.pose["t"])))
+    steps = np.diff(run.pose["x"] + 1j * run.pose["y"]) * np.exp(1j * angle[1:])
+    way = np.append(0.0, np.cumsum(steps))
+    return put(run, "pose", x=way.real, y=way.imag, yaw=run.pose["yaw"] + angle)
+
+
+@pytest.mark.parametrize("bias", BIASES.values(), ids=BIASES)
+def test_a_gyroscope_that_wanders_alone_is_named_and_has_no_constant_bias(bias):
+    run = winding()
+    found = named(gyroscope(run, lambda rate: rate + bias(run.odometry["t"])))
+    assert set(found) == {"headings_wander"}
+    finding = found["headings_wander"]
+    assert finding.level is Level.NOTE
+    assert finding.cause.startswith("The bias of the gyroscope wanders")
+    assert "the treads turn as the poses do" in finding.seen
+
+
+def test_a_map_that_turns_is_named_where_the_treads_turn_as_the_gyroscope():
+    run = winding()
+    found = named(turned_map(run, 0.02 * np.sin(run.pose["t"] / 15)))["headings_wander"]
+    assert found.cause.startswith("The heading of the poses drifts")
+
+
+def test_treads_that_slip_do_not_tell_which_of_both():
+    run, rng = winding(), np.random.default_rng(3)
+    wanders = gyroscope(run, lambda rate: rate + 0.02 * np.sin(run.odometry["t"] / 15))
+    slow = np.repeat(rng.standard_normal(60), len(run.odometry) // 60)
+    slips = treads(wanders, lambda left, right: (left - 0.05 * slow, right + 0.05 * slow))
+    cause = named(slips)["headings_wander"].cause
+    assert cause.startswith("Either the bias of the gyroscope wanders")
+    assert "or the heading of the poses drifts" in cause
+
+
+def test_little_and_constant_biases_and_noise_are_none():
+    run, rng = winding(), np.random.default_rng(4)
+    at_s = run.odometry["t"]
+    for rate in (
+        0.002 * np.sin(at_s / 15),
+        np.full_like(at_s, 0.02),
+        0.05 * rng.standard_normal(len(at_s)),
+    ):
+        changed = gyroscope(run, lambda gyro, rate=rate: gyro + rate)
+        assert "headings_wander" not in named(changed)
+
+
+def test_a_scale_to_one_side_in_circles_of_forty_seconds_is_no_bias():
+    sides = np.repeat([0.5, 0.0, -0.5, 0.0, 0.5, 0.0], 800)
+    run = drive(np.full(4800, 0.8), sides)
+    more = gyroscope(run, lambda rate: np.where(rate > 0, 1.06, 1.0) * rate)
+    assert "headings_wander" not in named(more)
+
+
+def test_without_a_yaw_nothing_is_compared():
+    run = winding()
+    wanders = gyroscope(run, lambda rate: rate + 0.02 * np.sin(run.odometry["t"] / 15))
+    yaw = np.full(len(run.pose), np.nan)
+    columns = {**run.pose.columns, "yaw": yaw}
+    blind = replace(wanders, pose=replace(wanders.pose, columns=columns))
+    assert "headings_wander" not in named(blind)
