@@ -17,6 +17,7 @@ from tests.blind.faults import (
     poses,
     references,
     robot,
+    slow,
     stamps,
     substitutes,
     texts,
@@ -40,6 +41,7 @@ ROOMS = (
     bent,
     computed,
     copied,
+    slow,
 )
 FAULTS = {fault.key: fault for room in ROOMS for fault in room.FAULTS}
 MOTION = frozenset({"motion"})
