@@ -65,7 +65,8 @@ def test_a_gyroscope_and_a_map_that_wander_together_are_no_fact():
 
 def test_a_wander_of_less_than_a_hundredth_is_none_though_it_is_certain():
     at_s = 0.05 * np.arange(4800)
-    run = drive(np.full(4800, 0.8), 0.4 * np.sin(at_s / 3), yaw_sigma=0.002)
+    turns = np.where(at_s % 20 < 10, 0.3, -0.2) * (at_s % 10 < 4)
+    run = drive(np.full(4800, 0.8), turns, yaw_sigma=0.002)
     wanders = gyroscope(run, lambda rate: rate + 0.0045 * np.sin(run.odometry["t"] / 25))
     assert "headings_wander" not in named(wanders)
 
