@@ -85,9 +85,6 @@ def test_a_clean_drive_has_no_warning(name):
 
 UNNAMED = {
     "gyroscope scaled": lambda run: gyroscope(run, lambda rate: 0.85 * rate),
-    "gyroscope wanders": lambda run: gyroscope(
-        run, lambda rate: rate + 0.06 * np.sin(run.odometry["t"] / 8)
-    ),
     "yaw of the poses drifts from their course": lambda run: put(
         gyroscope(run, lambda rate: rate + 0.01), "pose", yaw=run.pose["yaw"] + 0.01 * run.pose["t"]
     ),

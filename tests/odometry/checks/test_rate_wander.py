@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.faulty import gyroscope, put, treads
-from tests.odometry.checks.test_other_robots import drive, winding
+from tests.odometry.checks.test_other_robots import drive, turning_much, winding
 
 BIASES = {
     "a minute and a half": lambda at_s: 0.02 * np.sin(at_s / 15),
@@ -37,6 +37,14 @@ def test_a_gyroscope_that_wanders_alone_is_named_and_has_no_constant_bias(bias):
     assert finding.level is Level.NOTE
     assert finding.cause.startswith("The bias of the gyroscope wanders")
     assert "the treads turn as the poses do" in finding.seen
+
+
+def test_a_gyroscope_that_wanders_far_is_a_warning_and_no_disagreement():
+    run = drive(*turning_much())
+    wanders = gyroscope(run, lambda rate: rate + 0.06 * np.sin(run.odometry["t"] / 8))
+    (found,) = check_recording(wanders).at(Level.WARNING)
+    assert found.name == "headings_wander"
+    assert found.cause.startswith("The bias of the gyroscope wanders")
 
 
 def test_a_map_that_turns_is_named_where_the_treads_turn_as_the_gyroscope():
