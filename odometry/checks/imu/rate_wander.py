@@ -79,7 +79,8 @@ def headings_wander(evidence: Evidence) -> Iterator[Finding]:
             Level.WARNING if large else Level.NOTE,
             f"{seen}; the treads turn as the poses do",
             f"The {bias}",
-            "One constant does not correct it: `run` follows it where poses have a yaw",
+            "One constant does not correct it: `run` follows it while poses have a yaw, and is too "
+            "sure of its heading where they are missing for half a minute",
             mend=_with_rates_undone(found) if large else None,
         )
     elif found.by_poses:
