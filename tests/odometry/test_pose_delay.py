@@ -10,10 +10,8 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.pose_delay import without_pose_delay
 from odometry.run import Robot, Run
 from odometry.table import Table
-from tests.odometry.checks.faulty import put, treads
-from tests.odometry.checks.test_other_robots import without_gyroscope
-from tests.odometry.checks.test_parts_of_poses import driven, late
-from tests.odometry.checks.test_positions_alone import starts_and_stops
+from tests.odometry.checks.drives import driven, starts_and_stops
+from tests.odometry.checks.faulty import late, put, treads, without_gyroscope
 from tests.odometry.estimation.sensor_drives import WIDTH, drive
 
 

@@ -12,7 +12,7 @@ from odometry.pose_noise import with_pose_noise
 from terrain.cli.compare import compare
 from terrain.cli.identify import identify
 from terrain.main_job import run_odometry
-from tests.odometry.checks.test_other_robots import drive
+from tests.odometry.checks.drives import drive
 
 
 def test_the_remedy_names_options_that_the_verbs_have():

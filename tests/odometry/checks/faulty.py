@@ -90,6 +90,49 @@ def half_angle(angle):
     return np.sin(np.angle(np.exp(1j * angle)) / 2)
 
 
+def without_gyroscope(run):
+    columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}
+    return replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+def without_yaw(run, share=1.0, seed=1):
+    lost = np.random.default_rng(seed).random(len(run.pose)) < share
+    return put(run, "pose", yaw=np.where(lost, np.nan, run.pose["yaw"]))
+
+
+def later(run, names, seconds):
+    at_s = run.odometry.stamps_s
+    moved = {name: np.interp(at_s - seconds, at_s, run.odometry[name]) for name in names}
+    return put(run, "odometry", **moved)
+
+
+def late(run, names, seconds):
+    def of(name):
+        values = np.unwrap(run.pose[name]) if name == "yaw" else run.pose[name]
+        return np.interp(run.pose["t"] - seconds, run.pose["t"], values)
+
+    return put(run, "pose", **{name: of(name) for name in names})
+
+
+def held(run, name, begin_s, end_s, value=None):
+    """One tread as at the beginning of a time, or at a value, until the end of it."""
+    at_s = run.odometry.stamps_s - run.odometry.stamps_s[0]
+    rows = (at_s >= begin_s) & (at_s < end_s)
+    value = run.odometry[name][np.argmax(rows)] if value is None else value
+    return put(run, "odometry", **{name: np.where(rows, value, run.odometry[name])})
+
+
+def limited(run, name, change):
+    return put(run, "odometry", **{name: change(run.odometry[name])})
+
+
+SENSORS = {
+    "gyroscope and poses": lambda run: run,
+    "gyroscope": lambda run: replace(run, pose=None),
+    "poses": without_gyroscope,
+}
+
+
 FAULTS = {
     "yaw_in_degrees": lambda run: yaw(run, np.degrees),
     "yaw_reversed": lambda run: yaw(run, np.negative),

@@ -9,9 +9,9 @@ from odometry.checks.findings.consequences import CONSEQUENCES
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import drive, turning_all_round, winding
 from tests.odometry.checks.faulty import gyroscope, pose_stamps, positions, treads, yaw
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import drive, winding
 
 
 def test_no_finding_is_its_own_consequence():

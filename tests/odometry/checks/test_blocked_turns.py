@@ -7,8 +7,8 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import winding, without_gyroscope
+from tests.odometry.checks.drives import winding
+from tests.odometry.checks.faulty import put, without_gyroscope
 
 BEGIN, END = 800, 1200  # 40 s to 60 s
 SPEEDS = {"v_left": -0.3, "v_right": 0.3}

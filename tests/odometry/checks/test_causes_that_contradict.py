@@ -9,22 +9,9 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.unexplained.beyond_slip import beyond_slip
-from tests.odometry.checks.faulty import pose_stamps, positions, put, treads
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
-
-UNKNOWN = ["sensors_disagree"]
-
-
-def to_and_fro(seed=0):
-    """Forwards, backwards and on the spot, at speeds that change."""
-    at_s = 0.05 * np.arange(4000)
-    speed = 0.8 * np.sin(at_s / 5) + 0.3 * np.sin(at_s / 1.7)
-    return drive(speed, 0.5 * np.sin(at_s / 3.1) + 0.4 * np.sin(at_s / 1.1), seed=seed)
-
-
-def seen(run):
-    return " ".join(finding.seen for finding in check_recording(run).at(Level.WARNING))
+from tests.odometry.checks.answers import UNKNOWN, seen, warnings
+from tests.odometry.checks.drives import drive, to_and_fro, turning_all_round, winding
+from tests.odometry.checks.faulty import pose_stamps, positions, put, treads, without_gyroscope
 
 
 def late(run, seconds, *names):

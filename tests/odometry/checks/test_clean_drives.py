@@ -7,9 +7,9 @@ from odometry.checks.evidence.constancy import uneven_map
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round
 from tests.odometry.checks.faulty import positions, put
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive
 
 AT_S = PERIOD_S * np.arange(4000)
 

@@ -9,8 +9,8 @@ from odometry.checks.evidence.lag import Lag
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.timing import found_in
 from odometry.run import Run
+from tests.odometry.checks.drives import turning_all_round
 from tests.odometry.checks.faulty import pose_stamps
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
 
 REAL = (
     *("warthog_grass_20240729_1404", "warthog_grass_20240729_1446", "warthog_grass_20240808_1556"),

@@ -12,19 +12,10 @@ from odometry.checks.recording import check_recording
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.one_column_late import _squares_left
 from odometry.table import Table
-from tests.odometry.checks.faulty import put, treads
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+from tests.odometry.checks.drives import drive, varied
+from tests.odometry.checks.faulty import put, treads, without_gyroscope
 
 ROWS = 4000
-
-
-def varied(seed=0):
-    """A drive of stops, straights and turns, which no shift imitates."""
-    at_s = 0.05 * np.arange(ROWS)
-    speed = 0.6 + 0.5 * np.sin(at_s / 4) + 0.2 * np.sin(at_s / 1.1)
-    turn = 0.35 * np.sin(at_s / 5.7) + 0.3 * np.sin(at_s / 1.7) + 0.1
-    rest = (at_s < 2) | (at_s > at_s[-1] - 2)
-    return drive(np.where(rest, 0.0, speed), np.where(rest, 0.0, turn), seed=seed)
 
 
 def warnings(run):

@@ -20,18 +20,9 @@ from odometry.checks.findings.undo import (
 )
 from odometry.checks.recording import check_recording
 from odometry.table import Table
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import drive, turning_all_round, winding
 from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw
-from tests.odometry.checks.test_other_robots import drive, winding
-
-
-def warnings(run):
-    return [finding.name for finding in check_recording(run).at(Level.WARNING)]
-
-
-def turning_all_round(seed=0):
-    at_s = 0.05 * np.arange(4000)
-    turn = 0.35 * np.sin(at_s / 9) + 0.25 * np.sin(at_s / 2.3) + 0.12
-    return drive(0.8 + 0.3 * np.sin(at_s / 5), turn, seed=seed)
 
 
 def test_poses_of_another_drive_are_not_late():

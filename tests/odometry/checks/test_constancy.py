@@ -9,9 +9,9 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
-from tests.odometry.checks.faulty import gyroscope, positions, put, treads, width
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding, without_gyroscope
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round, winding
+from tests.odometry.checks.faulty import gyroscope, positions, put, treads, width, without_gyroscope
 
 
 def all_speeds():

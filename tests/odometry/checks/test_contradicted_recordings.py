@@ -10,9 +10,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.late_stamps import followed
 from odometry.run import Robot, Run
+from tests.odometry.checks.answers import UNKNOWN, warnings
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
-from tests.odometry.checks.test_causes_that_contradict import UNKNOWN
-from tests.odometry.checks.test_confirmed_causes import warnings
 
 GRASS, BENDS = "warthog_grass_20240808_1556", "warthog_grass_20240729_1446"
 

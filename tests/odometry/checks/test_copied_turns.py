@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
+from tests.odometry.checks.drives import table, winding
 from tests.odometry.checks.faulty import gyroscope, put
-from tests.odometry.checks.test_other_robots import table, winding
 
 
 def names(run):

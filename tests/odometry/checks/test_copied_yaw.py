@@ -7,8 +7,8 @@ import pytest
 
 from odometry import check_recording
 from odometry.checks.findings.finding import Level
+from tests.odometry.checks.drives import table, winding
 from tests.odometry.checks.faulty import gyroscope, put
-from tests.odometry.checks.test_other_robots import table, winding
 
 
 def integrated(run, rate):

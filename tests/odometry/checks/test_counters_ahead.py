@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from tests.odometry.checks.faulty import treads
-from tests.odometry.checks.test_confirmed_causes import warnings
-from tests.odometry.checks.test_less_usual_faults import uneven
-from tests.odometry.checks.test_other_robots import PERIOD_S, without_gyroscope
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, uneven
+from tests.odometry.checks.faulty import treads, without_gyroscope
 
 METRES_A_COUNT = {"metres": 1.0, "radians of 8 cm": 0.08, "ticks": 5e-4}
 

@@ -9,9 +9,9 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.slow_speeds import or_slow
 from odometry.checks.treads.unsigned import unsigned
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, drive, table, turning_all_round, winding
 from tests.odometry.checks.faulty import put, treads, width, yaw
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, table, winding
 
 AT_S = PERIOD_S * np.arange(4000)
 

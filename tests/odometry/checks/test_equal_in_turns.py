@@ -6,10 +6,8 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.equal_in_turns import equal_in_turns
-from tests.odometry.checks.faulty import pose_stamps, treads
-from tests.odometry.checks.test_late_gyroscope import later
-from tests.odometry.checks.test_one_delay import stepping
-from tests.odometry.checks.test_stuck_encoders import SENSORS
+from tests.odometry.checks.drives import stepping
+from tests.odometry.checks.faulty import SENSORS, later, pose_stamps, treads
 
 
 def equal_where(run, odd):

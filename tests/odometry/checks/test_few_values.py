@@ -8,10 +8,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.poses.map_lines import drawn_to_lines
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
-from tests.odometry.checks.test_columns_of_two_times import varied
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
-from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
+from tests.odometry.checks.drives import drive, turning_all_round, varied, winding
+from tests.odometry.checks.faulty import gyroscope, positions, put, treads, without_gyroscope, yaw
 
 
 def names(run):

@@ -7,9 +7,9 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.settings.settings import columns
-from tests.odometry.checks.faulty import gyroscope
+from tests.odometry.checks.drives import winding
+from tests.odometry.checks.faulty import gyroscope, without_gyroscope
 from tests.odometry.checks.test_odd_input import DRIVES, changed, drive, table, with_imu
-from tests.odometry.checks.test_other_robots import winding, without_gyroscope
 
 
 def names(run):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.table import Table
-from tests.odometry.checks.test_confirmed_causes import warnings
-from tests.odometry.checks.test_less_usual_faults import uneven
-from tests.odometry.checks.test_positions_alone import without_yaw
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import uneven
+from tests.odometry.checks.faulty import without_yaw
 
 
 def upside_down(run):

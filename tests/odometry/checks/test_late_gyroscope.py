@@ -9,14 +9,8 @@ from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.late_stamps import pose_late
-from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import winding
-
-
-def later(run, names, seconds):
-    at_s = run.odometry.stamps_s
-    moved = {name: np.interp(at_s - seconds, at_s, run.odometry[name]) for name in names}
-    return put(run, "odometry", **moved)
+from tests.odometry.checks.drives import winding
+from tests.odometry.checks.faulty import later
 
 
 def sparse(run):

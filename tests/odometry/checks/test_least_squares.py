@@ -10,7 +10,7 @@ from odometry.checks.evidence.least_squares import (
 )
 from odometry.checks.evidence.once import once
 from odometry.checks.unexplained import disagreement
-from tests.odometry.checks.test_other_robots import winding
+from tests.odometry.checks.drives import winding
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

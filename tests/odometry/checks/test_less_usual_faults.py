@@ -11,20 +11,11 @@ from odometry.checks.recording import check_recording
 from odometry.checks.stamps.interleaved import interleaved
 from odometry.checks.treads.tread_samples import tread_samples
 from odometry.table import Table
-from tests.odometry.checks.faulty import put, treads
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
-from tests.odometry.checks.test_positions_alone import without_yaw
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import drive, turning_all_round, uneven
+from tests.odometry.checks.faulty import put, treads, without_gyroscope, without_yaw
 
 AT_S = 0.05 * np.arange(4000)
-
-
-def uneven(seed=0):
-    """A drive whose speed and turns change all the time."""
-    rng = np.random.default_rng(seed)
-    lengths_s, phases = rng.uniform(2, 9, 8), rng.uniform(0, 6, 8)
-    waves = [np.sin(AT_S / s + p) for s, p in zip(lengths_s, phases, strict=True)]
-    return drive(0.6 + 0.2 * sum(waves[:4]), 0.3 * sum(waves[4:]), seed=seed)
 
 
 def at_pace(run, factor):

@@ -5,8 +5,8 @@ import pytest
 
 from odometry import check_recording
 from odometry.checks.units.unit_tables import Unit, as_likely
+from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import positions, put, treads
-from tests.odometry.checks.test_other_robots import winding
 
 
 def names(run):

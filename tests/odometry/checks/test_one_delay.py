@@ -12,22 +12,8 @@ from odometry.checks.stamps.explained_lags import UNDECIDED
 from odometry.checks.stamps.late_stamps import followed
 from odometry.checks.stamps.one_delay import Answer, answers
 from odometry.checks.stamps.timing import lags_of
-from tests.odometry.checks.faulty import pose_stamps, put, yaw
-from tests.odometry.checks.test_late_gyroscope import later
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding, without_gyroscope
-
-
-def stepping(seed=0, yaw_sigma=0.01):
-    """Turns and speeds that change at random moments, within a third of a second."""
-    rng = np.random.default_rng(seed)
-    count = 3200
-    turns, speeds = (
-        np.repeat(rng.uniform(least, most, 80), 40)[:count]
-        for least, most in ((-0.8, 0.8), (0.3, 1.2))
-    )
-    ramp = np.ones(7) / 7
-    smooth = [np.convolve(values, ramp, mode="same") for values in (speeds, turns)]
-    return drive(*smooth, yaw_sigma=yaw_sigma, seed=seed)
+from tests.odometry.checks.drives import PERIOD_S, drive, stepping, winding
+from tests.odometry.checks.faulty import later, pose_stamps, put, without_gyroscope, yaw
 
 
 def behind_a_filter(values, constant_s, period_s=PERIOD_S):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
+from tests.odometry.checks.drives import drive, winding
 from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import drive, winding
 
 
 def names(run):

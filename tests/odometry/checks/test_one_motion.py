@@ -9,7 +9,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.errors import IdentificationError, OdometryError
 from odometry.identification.identify import identify
-from tests.odometry.checks.test_other_robots import drive, winding
+from tests.odometry.checks.drives import drive, winding
 
 AT_S = 0.05 * np.arange(1600)
 STILL = 0 * AT_S

@@ -1,8 +1,5 @@
 """Clean recordings of other robots, and oddities that have no name in the catalogue."""
 
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -10,51 +7,8 @@ from odometry.checks.evidence.outliers import pose_outliers
 from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Robot, Run
-from odometry.table import Table
-from tests.odometry.checks.faulty import gyroscope, put, treads
-
-PERIOD_S = 0.05
-WIDTH_M = 0.9  # effective, of a track width of 0.6 m
-
-
-def table(file, **columns):
-    return Table(Path(file), columns, np.arange(2, 2 + len(columns["t"])))
-
-
-def drive(speed_m_s, turn_rad_s, *, yaw_sigma=0.01, sigma_m=0.02, seed=0):
-    """A recording of a twist (N,) at 20 Hz with poses at 10 Hz."""
-    rng = np.random.default_rng(seed)
-    stamps = PERIOD_S * np.arange(len(speed_m_s))
-    yaw = np.cumsum(turn_rad_s) * PERIOD_S
-    x, y = (np.cumsum(speed_m_s * f(yaw)) * PERIOD_S for f in (np.cos, np.sin))
-    slip = 1 + 0.01 * rng.standard_normal((2, len(stamps)))
-    left, right = (
-        (speed_m_s + side * turn_rad_s * WIDTH_M / 2) / 0.93 * noise
-        for side, noise in zip((-1, 1), slip, strict=True)
-    )
-    noise = rng.standard_normal((3, len(stamps[::2])))
-    pose = table(
-        "pose.csv",
-        t=stamps[::2],
-        x=x[::2] + sigma_m * noise[0],
-        y=y[::2] + sigma_m * noise[1],
-        yaw=np.angle(np.exp(1j * (yaw[::2] + yaw_sigma * noise[2]))),
-    )
-    gyro = turn_rad_s + 0.003 * rng.standard_normal(len(stamps))
-    odometry = table("odometry.csv", t=stamps, v_left=left, v_right=right, gyro_z=gyro)
-    return Run(Path("somewhere"), Robot(track_width=0.6), {}, odometry, pose)
-
-
-def winding(count=2400):
-    at_s = PERIOD_S * np.arange(count)
-    return drive(1 + 0.3 * np.sin(at_s / 7), 0.5 * np.sin(at_s / 3) + 0.2 * np.sin(at_s / 1.3))
-
-
-def without_gyroscope(run):
-    columns = {name: c for name, c in run.odometry.columns.items() if name != "gyro_z"}
-    return replace(run, odometry=replace(run.odometry, columns=columns))
-
+from tests.odometry.checks.drives import PERIOD_S, drive, winding
+from tests.odometry.checks.faulty import gyroscope, put, treads, without_gyroscope
 
 CLEAN = {
     "winding": winding,

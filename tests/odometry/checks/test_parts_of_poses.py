@@ -5,26 +5,8 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import put, treads, yaw
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
-
-
-def driven(seed=0):
-    """Speeds and turns that change all the time, so that both have a delay."""
-    rng = np.random.default_rng(seed)
-    speed, turn = (
-        np.convolve(rng.standard_normal(4400), np.hanning(60), "same")[:4000] for _ in range(2)
-    )
-    return drive(0.9 + 0.06 * speed, 0.08 * turn, seed=seed)
-
-
-def late(run, names, seconds):
-    def of(name):
-        values = np.unwrap(run.pose[name]) if name == "yaw" else run.pose[name]
-        return np.interp(run.pose["t"] - seconds, run.pose["t"], values)
-
-    return put(run, "pose", **{name: of(name) for name in names})
+from tests.odometry.checks.drives import driven, turning_all_round
+from tests.odometry.checks.faulty import late, put, treads, without_gyroscope, yaw
 
 
 def ahead(run, metres):

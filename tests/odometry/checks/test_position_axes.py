@@ -1,15 +1,13 @@
 """Positions of other axes are no yaw in degrees."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
-from tests.odometry.checks.faulty import gyroscope, positions, put, yaw
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
+from tests.odometry.checks.drives import turning_all_round
+from tests.odometry.checks.faulty import gyroscope, positions, put, without_gyroscope, yaw
 
 
 def first_warning(run):
@@ -18,11 +16,6 @@ def first_warning(run):
 
 def height(x):
     return np.random.default_rng(3).normal(0, 0.01, len(x))
-
-
-def without_gyroscope(run):
-    columns = {name: of for name, of in run.odometry.columns.items() if name != "gyro_z"}
-    return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
 @pytest.mark.parametrize("sensors", [lambda run: run, without_gyroscope])

@@ -9,14 +9,8 @@ from odometry.checks.evidence.evidence import Evidence, course_turns
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.unexplained.position_differences import paths_apart
-from tests.odometry.checks.faulty import FAULTS, gyroscope, put
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
-
-
-def without_yaw(run, share=1.0, seed=1):
-    lost = np.random.default_rng(seed).random(len(run.pose)) < share
-    return put(run, "pose", yaw=np.where(lost, np.nan, run.pose["yaw"]))
+from tests.odometry.checks.drives import drive, starts_and_stops, turning_all_round
+from tests.odometry.checks.faulty import FAULTS, gyroscope, put, without_gyroscope, without_yaw
 
 
 def warnings(run):
@@ -156,19 +150,6 @@ def test_turns_that_go_with_nothing_are_not_used():
     noise = np.random.default_rng(0).normal(0, 0.4, 4000)
     run = gyroscope(without_yaw(turning_all_round()), lambda _: noise)
     assert np.isnan(Evidence(run).pose_turn_rad).all()
-
-
-def starts_and_stops(delay_s, hz, sigma_m, seed=0):
-    """A drive of changing speed, with positions of a receiver that are late."""
-    at_s, rng = 0.05 * np.arange(4000), np.random.default_rng(seed)
-    phases = rng.uniform(0, 6, 4)
-    speed = sum(np.sin(at_s / s + p) for s, p in zip((1.5, 3, 5, 8), phases, strict=True))
-    run = drive(np.maximum(0.5 + 0.4 * speed, 0), 0.3 * np.sin(at_s / 4))
-    every = slice(None, None, round(1 / hz / float(np.median(np.diff(run.pose.stamps_s)))))
-    run = replace(run, pose=run.pose.rows(every))
-    noise = rng.normal(scale=sigma_m, size=(2, len(run.pose)))
-    moved = put(run, "pose", x=run.pose["x"] + noise[0], y=run.pose["y"] + noise[1])
-    return without_yaw(put(moved, "pose", t=moved.pose["t"] + delay_s))
 
 
 @pytest.mark.parametrize("gyroscope", [True, False])

@@ -7,8 +7,9 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from tests.odometry.checks.drives import drive, winding
 from tests.odometry.checks.faulty import gyroscope, put, treads
-from tests.odometry.checks.test_other_robots import drive, turning_much, winding
+from tests.odometry.checks.test_other_robots import turning_much
 
 BIASES = {
     "a minute and a half": lambda at_s: 0.02 * np.sin(at_s / 15),

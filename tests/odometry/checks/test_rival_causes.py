@@ -12,10 +12,8 @@ from odometry.checks.poses.position_axes import position_axes
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.tread_motion import tread_motion
 from odometry.checks.unexplained.scale_drift import scale_drifts
-from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
-from tests.odometry.checks.test_confirmed_causes import turning_all_round
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive
-from tests.odometry.checks.test_position_axes import without_gyroscope
+from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round
+from tests.odometry.checks.faulty import gyroscope, positions, put, treads, without_gyroscope, yaw
 
 
 def warnings(run):

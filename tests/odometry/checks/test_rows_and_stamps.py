@@ -10,10 +10,9 @@ from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.tread_motion import _cause
-from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_confirmed_causes import warnings
-from tests.odometry.checks.test_one_delay import stepping
-from tests.odometry.checks.test_other_robots import PERIOD_S, table, winding, without_gyroscope
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, stepping, table, winding
+from tests.odometry.checks.faulty import put, without_gyroscope
 
 AT_S = PERIOD_S * np.arange(4000)
 

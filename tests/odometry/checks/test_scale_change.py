@@ -6,7 +6,8 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.undo import changed, in_turn
 from odometry.checks.treads.scale_change import scale_change
-from tests.odometry.checks.test_other_robots import winding, without_gyroscope
+from tests.odometry.checks.drives import winding
+from tests.odometry.checks.faulty import without_gyroscope
 
 
 def later(run, v_left, v_right):

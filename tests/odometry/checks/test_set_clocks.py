@@ -14,9 +14,9 @@ from odometry.checks.recording import check_recording
 from odometry.checks.stamps.rates_by_delay import left_by_any_growing
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import stepping
 from tests.odometry.checks.faulty import pose_stamps, put
-from tests.odometry.checks.test_confirmed_causes import warnings
-from tests.odometry.checks.test_one_delay import stepping
 
 
 def set_at(share, step_s):

@@ -9,8 +9,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
 from odometry.run import Robot
-from tests.odometry.checks.faulty import width
-from tests.odometry.checks.test_other_robots import winding, without_gyroscope
+from tests.odometry.checks.drives import winding
+from tests.odometry.checks.faulty import width, without_gyroscope
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,9 @@ from odometry.checks.recording import check_recording
 from odometry.checks.treads.play import play
 from odometry.checks.treads.side_changes import side_changes
 from odometry.checks.unexplained.moments_of_spin import moments_of_spin
-from tests.odometry.checks.faulty import put, treads
-from tests.odometry.checks.test_one_delay import stepping
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive
+from tests.odometry.checks.drives import PERIOD_S, drive, stepping
+from tests.odometry.checks.faulty import SENSORS, put, treads
 from tests.odometry.checks.test_scale_change import later
-from tests.odometry.checks.test_stuck_encoders import SENSORS
 
 
 def to_and_fro(seed=0):

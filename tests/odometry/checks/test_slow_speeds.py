@@ -5,9 +5,8 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import WIDTH_M, drive
-from tests.odometry.checks.test_stuck_encoders import SENSORS, held, limited
+from tests.odometry.checks.drives import WIDTH_M, drive
+from tests.odometry.checks.faulty import SENSORS, held, limited, put
 
 
 def slow_for_a_while():

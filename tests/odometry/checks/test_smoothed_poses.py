@@ -9,8 +9,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.poses.smoothed_poses import smoothed_poses
 from odometry.checks.recording import check_recording
+from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import winding
 
 
 def smoothed(run, seconds, names=("x", "y", "yaw")):

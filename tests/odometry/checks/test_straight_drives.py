@@ -11,8 +11,8 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.straight_drives import straight_drives
 from odometry.run import Run
-from tests.odometry.checks.faulty import treads
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+from tests.odometry.checks.drives import drive
+from tests.odometry.checks.faulty import treads, without_gyroscope
 
 SENSORS = {
     "gyroscope and poses": lambda run: run,

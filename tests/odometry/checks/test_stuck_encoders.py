@@ -11,22 +11,8 @@ from odometry.checks.recording import check_recording
 from odometry.checks.treads.stuck_encoders import stuck_encoders
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
-from tests.odometry.checks.faulty import put
-from tests.odometry.checks.test_other_robots import drive, winding, without_gyroscope
-
-SENSORS = {
-    "gyroscope and poses": lambda run: run,
-    "gyroscope": lambda run: replace(run, pose=None),
-    "poses": without_gyroscope,
-}
-
-
-def held(run, name, begin_s, end_s, value=None):
-    """One tread as at the beginning of a time, or at a value, until the end of it."""
-    at_s = run.odometry.stamps_s - run.odometry.stamps_s[0]
-    rows = (at_s >= begin_s) & (at_s < end_s)
-    value = run.odometry[name][np.argmax(rows)] if value is None else value
-    return put(run, "odometry", **{name: np.where(rows, value, run.odometry[name])})
+from tests.odometry.checks.drives import drive, winding
+from tests.odometry.checks.faulty import SENSORS, held, limited, put
 
 
 def stuck(run):
@@ -140,10 +126,6 @@ def test_commands_that_both_treads_hold_in_turn_are_no_stuck_encoder(sensors):
     for begin_s in (20, 50, 80, 110):
         run = held(held(run, "v_left", begin_s, begin_s + 8), "v_right", begin_s + 10, begin_s + 18)
     assert stuck(SENSORS[sensors](run)) == []
-
-
-def limited(run, name, change):
-    return put(run, "odometry", **{name: change(run.odometry[name])})
 
 
 def slow_and_fast():

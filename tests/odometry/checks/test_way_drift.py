@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from tests.odometry.checks.drives import PERIOD_S, drive, winding
 from tests.odometry.checks.faulty import positions, put, treads
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
 
 
 def shares(count):

@@ -14,9 +14,9 @@ from odometry.checks.treads.tread_samples import peaks_often
 from odometry.checks.unexplained.disagreement import lasting_disagreements
 from odometry.checks.unexplained.little_explained import little_explained
 from odometry.checks.unexplained.repeated_rows import repeated_rows
+from tests.odometry.checks.answers import UNKNOWN, seen, warnings
+from tests.odometry.checks.drives import to_and_fro, turning_all_round
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads
-from tests.odometry.checks.test_causes_that_contradict import UNKNOWN, seen, to_and_fro
-from tests.odometry.checks.test_confirmed_causes import turning_all_round, warnings
 
 
 @pytest.fixture(scope="module")

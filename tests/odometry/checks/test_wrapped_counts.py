@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.checks.treads.wrapped_counts import unwrapped
-from tests.odometry.checks.faulty import treads
-from tests.odometry.checks.test_confirmed_causes import warnings
-from tests.odometry.checks.test_other_robots import PERIOD_S, winding, without_gyroscope
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import PERIOD_S, winding
+from tests.odometry.checks.faulty import treads, without_gyroscope
 
 WAY_M = 1.31  # of 65536 counts
 SENSORS = {

@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.checks.evidence.course_offsets import yaw_wanders
 from odometry.checks.evidence.evidence import Evidence
+from tests.odometry.checks.drives import PERIOD_S, drive, winding
 from tests.odometry.checks.faulty import put, yaw
-from tests.odometry.checks.test_other_robots import PERIOD_S, drive, winding
 
 
 def turning_by_pieces():

@@ -12,7 +12,8 @@ from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps
 from terrain.checks.image_motion import image_motion
 from terrain.checks.image_stretches import ImageStretches
-from tests.odometry.checks.test_other_robots import drive, without_gyroscope
+from tests.odometry.checks.drives import drive
+from tests.odometry.checks.faulty import without_gyroscope
 
 AT_S = 0.05 * np.arange(2400)
 
