@@ -11,9 +11,11 @@ from odometry.checks.evidence.heading_spans import HeadingSpans, heading_spans
 from odometry.checks.evidence.once import once
 from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.findings.undo import Mend, changed
+from odometry.checks.findings.undo import Mend, changed, in_turn
 from odometry.checks.imu.gyroscope_by_poses import headings_apart
+from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.run import Run
+from odometry.sensors import GYRO_AXES
 
 SPANS_S = (5.0, 1.5)  # over which both are compared
 ENDS = 0.1, 0.9  # quantiles of the rates that are compared
@@ -181,11 +183,20 @@ def _share(
 
 
 def _with_rates_undone(found: RateWander) -> Mend:
+    """The rates taken off what the robot turns about its z, in the axes of the sensor."""
+
     def mend(run: Run) -> Run:
         measured = run.yaw_rate
-        assert measured is not None  # noqa: S101 - the cause is one of the gyroscope
-        table = "imu" if measured.file == "imu.csv" else "odometry"
-        beside = np.interp(measured.stamps_s, found.stamps_s, found.rates_rad_s)
-        return changed(table, "gyro_z", lambda rates: rates - beside)(run)
+        by_imu = run.imu is not None and measured is not None and measured.file == "imu.csv"
+        table = "imu" if by_imu else "odometry"
+        beside = np.interp(getattr(run, table).stamps_s, found.stamps_s, found.rates_rad_s)
+        attitude = np.array(run.sensors.imu_rad or (0.0, 0.0, 0.0)) if by_imu else np.zeros(3)
+        parts = dict(zip(GYRO_AXES, rotation_from_roll_pitch_yaw(attitude)[2], strict=True))
+        mends = [
+            changed(table, name, lambda rates, part=part: rates - part * beside)
+            for name, part in parts.items()
+            if part
+        ]
+        return in_turn(*mends)(run)
 
     return mend

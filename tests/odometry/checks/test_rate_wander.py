@@ -7,6 +7,7 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from tests.odometry.checks.drives import drive, winding
 from tests.odometry.checks.faulty import gyroscope, put, treads
 from tests.odometry.checks.test_other_robots import turning_much
@@ -46,6 +47,38 @@ def test_a_gyroscope_that_wanders_far_is_a_warning_and_no_disagreement():
     (found,) = check_recording(wanders).at(Level.WARNING)
     assert found.name == "headings_wander"
     assert found.cause.startswith("The bias of the gyroscope wanders")
+
+
+def far_off():
+    run = drive(*turning_much())
+    return gyroscope(run, lambda rate: rate + 0.06 * np.sin(run.odometry["t"] / 8))
+
+
+def test_it_is_judged_where_a_cell_of_the_gyroscope_is_empty():
+    run = far_off()
+    rates = run.odometry["gyro_z"].copy()
+    rates[1000] = np.nan
+    warned = check_recording(put(run, "odometry", gyro_z=rates)).at(Level.WARNING)
+    assert [finding.name for finding in warned] == ["headings_wander"]
+
+
+@pytest.mark.parametrize("imu_rad", [(np.pi, 0.0, 0.0), (0.0, np.pi / 2, 0.3), (0.0, 0.0, 1.0)])
+def test_it_is_undone_in_the_axes_of_an_imu_as_it_is_mounted(imu_rad):
+    run = far_off()
+    z_of_robot = rotation_from_roll_pitch_yaw(np.array(imu_rad))[2]
+    rates = run.odometry["gyro_z"][:, None] * z_of_robot
+    t = run.odometry.stamps_s
+    columns = {"t": t, **dict(zip(("gyro_x", "gyro_y", "gyro_z"), rates.T, strict=True))}
+    kept = {n: c for n, c in run.odometry.columns.items() if n != "gyro_z"}
+    mounted = replace(
+        run,
+        settings={**run.settings, "sensors": {"imu": list(imu_rad)}},
+        imu=replace(run.odometry, columns=columns),
+        odometry=replace(run.odometry, columns=kept),
+    )
+    (found,) = check_recording(mounted).at(Level.WARNING)
+    assert found.name == "headings_wander"
+    assert "headings_wander" not in named(found.mend(mounted))
 
 
 def test_a_map_that_turns_is_named_where_the_treads_turn_as_the_gyroscope():
