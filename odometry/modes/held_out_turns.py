@@ -12,6 +12,7 @@ from odometry.modes.response import Record, Response, gains_at, simulated
 # Of turning, the straights between turns left out: the first as long as a short turn, the second
 # as a long one. Chosen in development (tests/studies/modes.md).
 TURNED_S = (1.5, 4.0)
+REST_S = 10.0  # by which gains are found that predict the others: as much as a terrain needs
 OVERLAP = 2  # windows overlap by half
 
 
@@ -55,10 +56,13 @@ def turn_errors(
 
 
 def _parts(records: Sequence[Record]) -> list[Record]:
-    """The records of a mode, or the quarters of its only one."""
-    if len(records) > 1:
-        return list(records)
-    return [Record(records[0].step_s, of) for of in np.array_split(records[0].table, PARTS)]
+    """The records of a mode; the quarters of one beside which the others are too short."""
+    lasts_s = [record.step_s * len(record.table) for record in records]
+    return [
+        Record(record.step_s, part)
+        for record, own_s in zip(records, lasts_s, strict=True)
+        for part in np.array_split(record.table, PARTS if sum(lasts_s) - own_s < REST_S else 1)
+    ]
 
 
 def _held_out(

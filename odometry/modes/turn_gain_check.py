@@ -74,11 +74,18 @@ def _ways(modes: VelocityModes, mode: int, alike_sigmas: float) -> FloatArray:
 
 
 def _settled(signals: Signals) -> tuple[FloatArray, FloatArray]:
-    """Yaw rates (N,) without spikes, NaN after lost rows, and how long (N,) each counts [s]."""
+    """Yaw rates (N,) without spikes, NaN after lost rows, and how long (N,) each counts [s].
+
+    A gyroscope may be slower than the rows of the treads: a rate counts since the one before.
+    """
     rates, stamps_s = signals.measured[:, -1].copy(), signals.stamps_s
-    rates[1:-1] = np.median(np.stack([rates[:-2], rates[1:-1], rates[2:]]), axis=0)
+    read = np.flatnonzero(np.isfinite(rates))
+    one, lasts_s = rates[read], np.zeros(len(rates))
+    if len(read) > 2:
+        rates[read[1:-1]] = np.median(np.stack([one[:-2], one[1:-1], one[2:]]), axis=0)
+        since_s = np.diff(stamps_s[read], prepend=stamps_s[read[0]])
+        lasts_s[read] = np.minimum(since_s, np.median(since_s))
     steps_s = np.diff(stamps_s, prepend=stamps_s[0])
-    usual_s = float(np.median(steps_s))
-    lost_s = np.where(steps_s > LOST_STEPS * usual_s, stamps_s, -np.inf)
+    lost_s = np.where(steps_s > LOST_STEPS * float(np.median(steps_s)), stamps_s, -np.inf)
     rates[stamps_s - np.maximum.accumulate(lost_s) < SETTLES_S] = np.nan
-    return rates, np.minimum(steps_s, usual_s)
+    return rates, lasts_s

@@ -45,10 +45,13 @@ class ColourRange:
     limit : float
         Of the mean distance of a run's images to the nearest patch of other photographs: all but
         one of a hundred runs of three training photographs of one terrain keep it.
+    knows_grey : bool
+        Whether some patches of every terrain are grey images in three channels.
     """
 
     colours: FloatArray
     limit: float
+    knows_grey: bool = False
 
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
@@ -65,7 +68,9 @@ class ColourRange:
         photos = rows_of_photographs(codes, groups)
         runs = drawn_runs(photos, np.array([codes[rows[0]] for rows in photos]))
         means = [nearest[run].mean() for run in runs]
-        return cls(colours, float(max(np.quantile(means, 1 - FALSE_ALARMS), 1e-9)))
+        limit = float(max(np.quantile(means, 1 - FALSE_ALARMS), 1e-9))
+        grey = {int(code) for i, code in zip(rows, codes, strict=True) if is_colourless(patches[i])}
+        return cls(colours, limit, knows_grey=grey == set(codes.tolist()))
 
     def distances(self, colours: FloatArray) -> FloatArray:
         """Of colours (m, 2) to the nearest training patch: as they are, red and blue exchanged."""
@@ -86,7 +91,8 @@ class ColourRange:
 
     def arrays(self) -> dict[str, AnyArray]:
         """Everything learned, by name."""
-        return {"colour_points": self.colours, "colour_limit": np.array([self.limit])}
+        numbers = np.array([self.limit, self.knows_grey])
+        return {"colour_points": self.colours, "colour_numbers": numbers}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self | None:
@@ -99,7 +105,7 @@ class ColourRange:
         """
         if "colour_points" not in arrays:
             return None
-        colours, limit = arrays["colour_points"], arrays["colour_limit"]
-        if colours.ndim != 2 or colours.shape[1] != 2 or not len(colours) or limit.shape != (1,):
-            raise ValueError(f"colours of shapes {colours.shape}, {limit.shape}")
-        return cls(colours, float(limit[0]))
+        colours, numbers = arrays["colour_points"], arrays["colour_numbers"]
+        if colours.ndim != 2 or colours.shape[1] != 2 or not len(colours) or numbers.shape != (2,):
+            raise ValueError(f"colours of shapes {colours.shape}, {numbers.shape}")
+        return cls(colours, float(numbers[0]), knows_grey=bool(numbers[1]))

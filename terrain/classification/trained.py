@@ -74,7 +74,9 @@ class TrainedClassifier(ModelFile):
         version 0.13 the median of their distances. It is unknown as well where it shows no terrain,
         or things, or where the name is improbable, see `Classification.reason`; ``chen2023``,
         models of features and of files before version 0.14 do not check that, and those before
-        0.16 not whether it shows things, nor whether the name is improbable.
+        0.16 not whether it shows things, nor whether the name is improbable. Of a model that uses
+        colour it is unknown where its three channels are equal, unless every terrain in training
+        has such photographs.
 
         Raises
         ------
@@ -94,9 +96,13 @@ class TrainedClassifier(ModelFile):
             return answer
         code = int(np.argmax(list(answer.probabilities.values())))
         reason = self.shown_ground_.lacks(cut_patches(image, self.patch_size_px), code)
-        if not reason and self.colour_ and is_colourless(image):
+        if not reason and self.colour_ and not self._knows_grey and is_colourless(image):
             reason = COLOURLESS
         return replace(answer, label=UNKNOWN, reason=reason) if reason else answer
+
+    @property
+    def _knows_grey(self) -> bool:
+        return self.colour_range_ is not None and self.colour_range_.knows_grey
 
     def _calibrated(self, image: ByteImage, answer: Classification) -> Classification:
         look = self.training_look_

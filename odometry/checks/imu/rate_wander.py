@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -187,16 +188,20 @@ def _with_rates_undone(found: RateWander) -> Mend:
 
     def mend(run: Run) -> Run:
         measured = run.yaw_rate
-        by_imu = run.imu is not None and measured is not None and measured.file == "imu.csv"
+        by_imu = measured is not None and measured.file == "imu.csv"
         table = "imu" if by_imu else "odometry"
         beside = np.interp(getattr(run, table).stamps_s, found.stamps_s, found.rates_rad_s)
         attitude = np.array(run.sensors.imu_rad or (0.0, 0.0, 0.0)) if by_imu else np.zeros(3)
         parts = dict(zip(GYRO_AXES, rotation_from_roll_pitch_yaw(attitude)[2], strict=True))
         mends = [
-            changed(table, name, lambda rates, part=part: rates - part * beside)
+            changed(table, name, partial(_less, part * beside))
             for name, part in parts.items()
             if part
         ]
         return in_turn(*mends)(run)
 
     return mend
+
+
+def _less(beside: FloatArray, rates: FloatArray) -> FloatArray:
+    return rates - beside

@@ -50,6 +50,14 @@ def test_a_record_of_another_gain_is_off_by_it_where_it_is_held_out():
     np.testing.assert_allclose(apart, 0.088, atol=0.01)  # 0.1 held out, 0.05 where it is not
 
 
+def test_a_record_beside_short_ones_alone_is_held_out_in_quarters():
+    """Gains of 0.4 s predict nothing."""
+    rng = np.random.default_rng(5)
+    long, short = record_of(rng), record_of(rng)
+    few = Record(STEP_S, short.table[1000:1020])
+    assert (deviations({"ice": [long, few]}) < 0.02).all()
+
+
 def test_a_record_that_does_not_turn_determines_nothing():
     rng = np.random.default_rng(4)
     straight = record_of(rng)

@@ -47,6 +47,15 @@ def checked(gain, mode_set=None, leading=0, signals=None):
     return turn_gain_check(signals or signals_of(gain), modes, rows, np.zeros(SIZE))
 
 
+@pytest.mark.parametrize("every", [2, 5])
+def test_a_gyroscope_that_is_slower_than_the_treads_measures_as_well(every):
+    signals = signals_of(GAIN * 1.1)
+    rates = np.where(np.arange(SIZE) % every == 0, signals.measured[:, 1], np.nan)
+    measured = np.column_stack([signals.measured[:, 0], rates])
+    off = checked(GAIN, signals=replace(signals, measured=measured))
+    assert off[STAMPS_S > 2.0].all()
+
+
 @pytest.mark.parametrize("share", [-0.1, 0.1])
 def test_a_turn_beside_the_mode_contradicts_it_on_the_straight_after_it(share):
     assert checked(GAIN * (1 + share))[STAMPS_S > 1.0].all()

@@ -140,6 +140,18 @@ def test_a_grey_image_in_three_channels_has_no_name(model):
     assert not any(answer.reason == COLOURLESS for answer in model.classify(images))
 
 
+@pytest.mark.parametrize(("grey_in", "is_known"), [(("brown",), False), (("brown", "green"), True)])
+def test_grey_images_have_names_where_every_terrain_was_grey_in_training(grey_in, is_known):
+    images, labels, groups = photographs(1)
+    for i, (label, group) in enumerate(zip(labels, groups, strict=True)):
+        if label in grey_in and int(group.split()[1]) < 3:
+            images[i] = colourless(images[i])
+    model = TerrainClassifier(colour=True).fit(images, labels, groups)
+    assert model.colour_
+    answers = model.classify([colourless(image) for image in photographs(2)[0]])
+    assert all((answer.reason == COLOURLESS) != is_known for answer in answers)
+
+
 def test_compression_hardly_colours_a_grey_image(rng):
     image = np.repeat(rng.integers(0, 255, (8, 8, 1), dtype=np.uint8), 3, axis=2)
     assert is_colourless(image)
@@ -155,7 +167,7 @@ def test_a_file_keeps_the_colours(model, tmp_path):
     assert likeness_of(loaded, exchanged) == likeness_of(model, exchanged)
     assert ColourRange.from_arrays({}) is None
     with pytest.raises(ValueError, match="shapes"):
-        ColourRange.from_arrays({"colour_points": np.zeros((3, 3)), "colour_limit": np.ones(())})
+        ColourRange.from_arrays({"colour_points": np.zeros((3, 3)), "colour_numbers": np.ones(2)})
 
 
 def test_a_grey_model_says_nothing_of_colours():
