@@ -178,7 +178,7 @@ def _of_rates(table: FeelTable, rates_hz: FloatArray) -> Iterator[str]:
         own, others = (rates_hz[np.unique(table.runs[rows])] for rows in (of, ~of))
         if own.max() * RATES_APART < others.min() or others.max() * RATES_APART < own.min():
             yield (
-                f"all runs of {name} were sampled {_rates(own)} times a second, those of other "
+                f"All runs of {name} were sampled {_rates(own)} times a second, those of other "
                 f"terrains {_rates(others)} times: another IMU or its filter may be what "
                 "distinguishes it, held out as well."
             )

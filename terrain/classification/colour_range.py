@@ -12,7 +12,7 @@ from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.look import spread_rows
 from terrain.classification.run_limits import drawn_runs, rows_of_photographs
 
-FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
+COLOUR_FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
 WHITE_SHARE = 0.01  # of white, added to each mean: black has no logarithm
 # Between the channels of a grey image that was stored in three; those of a camera vary by more.
 COLOURLESS_GREYS = 2
@@ -68,7 +68,7 @@ class ColourRange:
         photos = rows_of_photographs(codes, groups)
         runs = drawn_runs(photos, np.array([codes[rows[0]] for rows in photos]))
         means = [nearest[run].mean() for run in runs]
-        limit = float(max(np.quantile(means, 1 - FALSE_ALARMS), 1e-9))
+        limit = float(max(np.quantile(means, 1 - COLOUR_FALSE_ALARMS), 1e-9))
         grey = {int(code) for i, code in zip(rows, codes, strict=True) if is_colourless(patches[i])}
         return cls(colours, limit, knows_grey=grey == set(codes.tolist()))
 

@@ -92,9 +92,9 @@ def _of_origins(patches: LabelledPatches) -> Iterator[str]:
     if apart:
         terrains = "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
         yield (
-            "Note: photographs that no other terrain's are like, by what their files say: "
-            f"{terrains}. What is held out is of the same origin, so that a model which recognises "
-            "the camera or the compression, and not the terrain, seems to be right: test it on "
+            "Note: the files say that photographs of a terrain have an origin that those of no "
+            f"other terrain have: {terrains}. What is held out has the same origin. A model that "
+            "recognises the camera, and not the terrain, would seem to be right: test it on "
             "photographs of several terrains by one camera (classify)"
         )
 

@@ -2,9 +2,9 @@
 
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.modes_real
 
-Warthog runs on five grounds, joined end to end, and Husky runs with yaw rate and wheels only.
+Warthog runs on five terrains, joined end to end, and Husky runs with yaw rate and wheels only.
 Modes are identified on other runs (Warthog: each run is held out once), or on the other half where
-a ground has one run (Husky). Tables are shares of the time by true ground (row) and answer.
+a terrain has one run (Husky). Tables are shares of the time by true terrain (row) and answer.
 Traction modes are followed on each Warthog run alone: poses of one do not go on in the next.
 """
 
@@ -43,16 +43,16 @@ TESTS = (
     "drifts",
 )
 KINDS: Mapping[str, Mapping[str, bool]] = {
-    "model and noise of each ground": {},
-    "a model of each ground, one noise": {"common_noise": True},
-    "one model, noise of each ground": {"shared": True},
+    "model and noise of each terrain": {},
+    "a model of each terrain, one noise": {"common_noise": True},
+    "one model, noise of each terrain": {"shared": True},
 }
 
 
 def main() -> None:
     """Print the tables."""
     folder = Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion"
-    warthog, husky = by_ground(folder, "warthog_"), by_ground(folder, "husky_borealtc_")
+    warthog, husky = by_terrain(folder, "warthog_"), by_terrain(folder, "husky_borealtc_")
     for models, options in KINDS.items():
         folds = max(map(len, warthog.values()))
         tracks = [
@@ -62,7 +62,7 @@ def main() -> None:
         print_table(f"Warthog, by held-out run, {models}", [track for track, _ in tracks])
         off = np.concatenate([of for _, of in tracks])
         print(f"yaw rates within two sigma of the state: {(off < 2).mean():.2f}\n")
-        halved = {ground: [halves(run) for run in runs] for ground, runs in husky.items()}
+        halved = {terrain: [halves(run) for run in runs] for terrain, runs in husky.items()}
         tracks = [
             judged(
                 [pair[known] for of in halved.values() for pair in of],
@@ -81,20 +81,20 @@ def main() -> None:
     print_table("Warthog, by held-out run, traction modes", by_poses)
 
 
-def by_ground(folder: Path, prefix: str) -> dict[str, list[Run]]:
-    """Runs whose ground INDEX.csv names, by ground."""
+def by_terrain(folder: Path, prefix: str) -> dict[str, list[Run]]:
+    """Runs whose terrain INDEX.csv names, by terrain."""
     found = defaultdict(list)
     with (folder / "INDEX.csv").open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            ground = row["terrain"].split(" (")[0]
-            if row["run"].startswith(prefix) and ground != "not stated":
+            terrain = row["terrain"].split(" (")[0]
+            if row["run"].startswith(prefix) and terrain != "not stated":
                 run = Run.read(folder / row["run"])
-                found[ground].append(replace(run, settings={"run": {"terrain": ground}}))
+                found[terrain].append(replace(run, settings={"run": {"terrain": terrain}}))
     return dict(found)
 
 
 def left_out(runs: dict[str, list[Run]], fold: int) -> tuple[list[Run], list[Run]]:
-    """Runs to identify on, and the run of each ground that this fold holds out."""
+    """Runs to identify on, and the run of each terrain that this fold holds out."""
     known = [run for of in runs.values() for place, run in enumerate(of) if place != fold]
     return known, [of[fold] for of in runs.values() if fold < len(of)]
 
@@ -108,8 +108,8 @@ def judged(
         gains = modes.steady_gains()[:, 1] * [-1, 1]
         lags = -1 / modes.A[:, 1, 1]
         said = ", ".join(
-            f"{ground} {gain.mean():.3f} ({lag:.2f} s, error {np.sqrt(noise):.3f})"
-            for ground, gain, lag, noise in zip(
+            f"{terrain} {gain.mean():.3f} ({lag:.2f} s, error {np.sqrt(noise):.3f})"
+            for terrain, gain, lag, noise in zip(
                 modes.names, gains, lags, modes.measurement_variance[:, 1], strict=True
             )
         )

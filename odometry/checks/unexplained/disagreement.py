@@ -37,13 +37,14 @@ def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[F
     """One warning where sensors differ and nothing `found` explains it; a drift has a name."""
     if any(finding.level is not Level.NOTE for finding in found):
         return
-    place = uneven_map(evidence)
-    seen = [*lasting_disagreements(evidence), place, peaks_often(evidence)]
+    uneven = uneven_map(evidence)
+    seen = [*lasting_disagreements(evidence), uneven, peaks_often(evidence)]
     seen += [moments_of_spin(evidence), play(evidence)]
     if not any(finding.name == "slip_episodes" for finding in found):
         seen.append(positions_apart(evidence))
     words = [word for word in seen if word]
-    drift = list(way_drifts(evidence, place)) if words in ([], [place]) else []
+    may_drift = not words or words == [uneven]
+    drift = list(way_drifts(evidence, uneven)) if may_drift else []
     if drift or not words:
         yield from drift
     else:

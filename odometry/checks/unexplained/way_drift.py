@@ -31,10 +31,10 @@ class Line:
     last: float
 
 
-def way_drifts(evidence: Evidence, place: str) -> Iterator[Finding]:
+def way_drifts(evidence: Evidence, uneven: str) -> Iterator[Finding]:
     """Positions whose scale drifts against the treads, while turns keep theirs.
 
-    A scale of the treads changes turns alike, most terrain changes them more. `place` says that
+    A scale of the treads changes turns alike, most terrain changes them more. `uneven` says that
     the way differs between places of the map, which a drive that goes on from one to the other
     does not tell from time; "" where it does not.
     """
@@ -64,7 +64,7 @@ def way_drifts(evidence: Evidence, place: str) -> Iterator[Finding]:
     yield Finding(
         "scale_drifts",
         Level.WARNING,
-        "; ".join(filter(None, (seen, place))),
+        "; ".join(filter(None, (seen, uneven))),
         cause,
         "Drive one measured distance at first and at last: if pose.csv has two lengths for it, "
         "the map drifts",

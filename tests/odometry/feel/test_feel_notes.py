@@ -23,7 +23,7 @@ def drives_at(rates_of):
 def test_a_terrain_with_a_sampling_rate_of_its_own_is_named():
     rates_of = {"tiles": [100.0] * 3, "gravel": [50.0] * 3, "snow": [100.0, 200.0, 100.0]}
     (note,) = said(drives_at(rates_of))
-    assert note.startswith("all runs of gravel were sampled 50 times a second, those of other")
+    assert note.startswith("All runs of gravel were sampled 50 times a second, those of other")
     assert "terrains 100 to 200 times" in note
 
 

@@ -68,4 +68,4 @@ def test_a_terrain_by_a_camera_of_its_own_is_named(tmp_path, rng):
             file = f"{tmp_path / terrain / str(photo)}.jpg"
             cv2.imwrite(file, image, [cv2.IMWRITE_JPEG_QUALITY, quality])
     (note,) = said(tmp_path)
-    assert "by what their files say: mud (JPEG compression: 5 of 5). " in note
+    assert "no other terrain have: mud (JPEG compression: 5 of 5). " in note
