@@ -1,5 +1,7 @@
 """What is said of the runs from which feel is learned."""
 
+from dataclasses import replace
+
 from odometry.feel.design import Design
 from odometry.feel.identify_feel import notes_of
 from odometry.feel.table import FeelTable
@@ -7,8 +9,10 @@ from odometry.feel.windows import feel_windows
 from tests.odometry.feel.feel_drives import drive
 
 
-def said(runs):
+def said(runs, top_hz=None):
     windows = [feel_windows(run, 2.0) for run in runs]
+    if top_hz is not None:
+        windows = [replace(one, top_hz=top) for one, top in zip(windows, top_hz, strict=True)]
     return notes_of(FeelTable.of(windows, Design.shared(windows)), windows, by_day=True)
 
 
@@ -29,3 +33,9 @@ def test_a_terrain_with_a_sampling_rate_of_its_own_is_named():
 
 def test_one_run_at_the_rate_of_the_others_is_enough():
     assert said(drives_at({"tiles": [100.0] * 3, "gravel": [50.0, 50.0, 100.0]})) == ()
+
+
+def test_rates_of_one_sensor_differ_a_little():
+    runs = drives_at({"tiles": [100.0] * 3, "gravel": [100.0] * 3})
+    assert said(runs, [50.0] * 3 + [52.0] * 3) == ()
+    assert len(said(runs, [50.0] * 3 + [58.0] * 3)) == 2

@@ -89,6 +89,20 @@ def test_a_bias_of_the_gyroscope_is_no_gain():
     assert checked(GAIN, signals=slow).any()
 
 
+def test_the_bias_that_the_filters_know_is_taken_off():
+    biased = signals_of(GAIN)
+    biased.measured[:, -1] += 0.2
+    modes, rows = set_of().modes, np.zeros(SIZE, dtype=int)
+    assert turn_gain_check(biased, modes, rows, np.zeros(SIZE)).any()
+    assert not turn_gain_check(biased, modes, rows, np.full(SIZE, 0.2)).any()
+
+
+def test_one_sample_far_off_is_no_gain():
+    spiked = signals_of(GAIN)
+    spiked.measured[100::200, -1] += 20.0
+    assert not checked(GAIN, signals=spiked).any()
+
+
 def test_a_later_turn_takes_back_what_an_earlier_one_contradicted():
     """After the shorter window of turning, if another mode led in the earlier one."""
     changes_s = TURN_S - TURNED_S[0] - 0.5

@@ -13,6 +13,7 @@ from terrain.classification.colour_range import (
     is_colourless,
 )
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.image_labels.image_label import ImageLabel
 from terrain.image_labels.image_labeller import RunLikeness
 
@@ -107,6 +108,17 @@ def test_another_white_balance_is_no_exchange(model):
 def test_both_notes_are_sentences():
     one = Likeness(FEWEST_IMAGES, 0.9, 0.9, (), beyond=2.0, colour_beyond=2.0)
     assert "train with them. The colours of the images are unlike" in one.note
+
+
+def test_grey_images_have_no_colours_to_compare(model):
+    assert model.likeness([image[..., 0] for image in photographs(2)[0]]).colour_beyond == 0
+
+
+def test_own_statistics_compare_colours_as_well(model):
+    run = RunLikeness(OwnStatisticsClassifier(model))
+    for image in photographs(2)[0]:
+        run.add([exchanged(image)])
+    assert run.likeness.exchanged
 
 
 def test_few_images_say_nothing(model):

@@ -76,6 +76,12 @@ def test_crops_of_any_size_say_nothing(photograph):
     assert set_apart(crops) == {}
 
 
+def test_three_of_four_photographs_are_not_most(photograph):
+    photos = labelled(photograph, {"grass": {}, "sand": {}, "gravel": {"quality": 60}}, photos=6)
+    photos |= {photograph(f"other{i}"): "gravel" for i in range(2)}
+    assert set_apart(photos) == {}
+
+
 def test_few_photographs_say_nothing(photograph):
     of_each = {"grass": {}, "gravel": {"quality": 60}}
     assert set_apart(labelled(photograph, of_each, photos=FEWEST - 1)) == {}

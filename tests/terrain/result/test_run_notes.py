@@ -62,6 +62,13 @@ def test_images_that_are_unlike_the_training_photographs_come_before_their_label
     assert not any("unlike" in one for one in run_notes(of))
 
 
+def test_colours_that_are_unlike_leave_the_names():
+    of = starting(["grass"])
+    of.watcher.seen.likeness = Likeness(40, 0.6, 0.5, (), colour_beyond=1.5)
+    (hint,) = [one for one in run_notes(of) if "colours" in one]
+    assert hint.endswith("or with images in this light")
+
+
 def test_where_another_camera_would_not_be_noticed_it_is_said_of_images_like_training():
     of = starting(["grass"])
     of.watcher.classifier.noticed_share_ = 0.4
