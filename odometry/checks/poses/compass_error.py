@@ -27,6 +27,9 @@ OFF_AXIS = 20.0  # degrees from an axis of the frame, beyond which its axes have
 HALF = 0.6  # of the stretch, that each half of the recording has
 SHARP = 0.3  # turn in a window [rad] from which its distance says little
 TIGHT = 0.9  # correlation
+# Windows within so much of either axis of a stretch. Where none is, it is extrapolated: on lanes
+# over two terrains, whose courses stay within 60 degrees.
+NEAR_RAD, LEAST_NEAR = np.radians(30), 10
 
 
 def bent(evidence: Evidence) -> Iterator[Finding]:
@@ -74,6 +77,12 @@ def _yaw_bent(evidence: Evidence) -> Iterator[Finding]:
     )
 
 
+def _both_ways(off_rad: FloatArray) -> bool:
+    """Whether courses (K,) less an axis are often along it and often across it."""
+    along, across = np.abs(np.cos(off_rad)), np.abs(np.sin(off_rad))
+    return all(int(np.sum(of > np.cos(NEAR_RAD))) >= LEAST_NEAR for of in (along, across))
+
+
 def _all_round(spans: HeadingSpans) -> bool:
     octants = np.floor((spans.yaw_rad[:, 0] % (2 * np.pi)) / (np.pi / 4)).astype(int)
     counts = np.bincount(np.clip(octants, 0, 7), minlength=8)
@@ -110,9 +119,10 @@ def _stretched(evidence: Evidence) -> Iterator[Finding]:
     sure = share * found.slope > CERTAIN * found.sigmas[1:].max() and found.correlation > TIGHT
     if ratio < STRETCHED or not sure or _size(found.residuals) > 0.8 * _size(plain.residuals):
         return
-    if not _lasts(m, distance_m, found):
-        return
     along_rad = float(np.arctan2(found.coefficients[2], found.coefficients[1]) / 2)
+    off_rad = m.course_rad[np.isfinite(distance_m)] - along_rad
+    if not (_both_ways(off_rad) and _lasts(m, distance_m, found)):
+        return
     by_yaw = _ratio_by_yaw(evidence, along_rad, sharp)
     if by_yaw is not None and by_yaw < 1 + HALF * (ratio - 1):
         return

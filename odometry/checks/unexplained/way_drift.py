@@ -17,18 +17,25 @@ PARTS, FEWEST = 8, 6  # of the way
 KNOWN = 0.2  # standard deviation of a factor that counts
 LEAST = 1.1  # ratio of the factors at both ends, of a line through those of the parts
 SURELY = 5.0  # standard deviations of that line; as recorded 1.5 at most of what changes so much
+# By the treads of an ideal drive, between two poses. In more the way is longer than its chord, and
+# the place of the sensor counts.
+GENTLE_RAD = 1.0
 TURNS_KEEP, TURNS_SURELY = 0.75, 2.0  # share of the change that turns surely stay below
 TURNS_UNKNOWN = 0.35  # share of the change: standard deviation of that of turns
 
 
 @dataclass(frozen=True)
 class Line:
-    """A line through the logarithms of factors, over the share of the way: its rise."""
+    """A line through the logarithms of factors, over the share of the way: its rise.
+
+    `is_step` says that one step explains them better: another terrain from there on.
+    """
 
     rise: float
     sigma: float
     first: float
     last: float
+    is_step: bool
 
 
 def way_drifts(evidence: Evidence, uneven: str) -> Iterator[Finding]:
@@ -40,8 +47,11 @@ def way_drifts(evidence: Evidence, uneven: str) -> Iterator[Finding]:
     """
     if evidence.heading is None:
         return
-    way = _line(evidence, evidence.motion, evidence.forward_m, evidence.motion.mean_m)
-    if way is None or abs(way.rise) < max(np.log(LEAST), SURELY * way.sigma):
+    of = evidence.motion
+    turned_rad = np.abs(of.difference_m) / evidence.run.robot.track_width
+    along_m = np.where(turned_rad < GENTLE_RAD, evidence.forward_m, np.nan)
+    way = _line(evidence, of, along_m, of.mean_m)
+    if way is None or way.is_step or abs(way.rise) < max(np.log(LEAST), SURELY * way.sigma):
         return
     turns = next(measured_turns(evidence))
     turn = _line(evidence, turns.motion, turns.target, turns.motion.difference_m)
@@ -88,5 +98,8 @@ def _line(evidence: Evidence, of: Motion, target: FloatArray, by: FloatArray) ->
     rise = float(share @ logs) / float(share @ share)
     left = np.array(logs) - np.mean(logs) - rise * share
     sigma = float(np.sqrt(left @ left / (len(logs) - 2) / (share @ share)))
+    steps = (np.split(np.array(logs), [place]) for place in range(1, len(logs)))
+    is_step = min(sum(len(of) * of.var() for of in both) for both in steps) < left @ left
     at_ends = np.mean(logs) + rise * (np.array([0.0, 1.0]) - np.mean(middles))
-    return Line(rise, sigma, *np.exp(at_ends).tolist())
+    first, last = np.exp(at_ends).tolist()
+    return Line(rise, sigma, first, last, is_step=bool(is_step))

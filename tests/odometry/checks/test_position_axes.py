@@ -6,8 +6,16 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.run import Run
-from tests.odometry.checks.drives import turning_all_round
-from tests.odometry.checks.faulty import gyroscope, positions, put, without_gyroscope, yaw
+from tests.odometry.checks.answers import warnings
+from tests.odometry.checks.drives import drive, turning_all_round
+from tests.odometry.checks.faulty import (
+    gyroscope,
+    positions,
+    put,
+    without_gyroscope,
+    without_yaw,
+    yaw,
+)
 
 
 def first_warning(run):
@@ -42,3 +50,11 @@ def test_yaw_in_degrees_is_still_named(of_gyroscope):
     run = gyroscope(turning_all_round(), of_gyroscope)
     names = [finding.name for finding in check_recording(yaw(run, np.degrees)).findings]
     assert "yaw_in_degrees" in names
+
+
+def test_what_is_across_lanes_is_not_extrapolated():
+    """Courses within 30 degrees of one axis: the same for a stretch as for a slip in turns."""
+    at_s = 0.05 * np.arange(6000)
+    run = drive(np.full(6000, 0.9), np.gradient(0.5 * np.sin(at_s / 9), 0.05))
+    lanes = positions(without_yaw(run), lambda x, y: (x, 2.5 * y))
+    assert "positions_stretched" not in warnings(lanes)

@@ -1,5 +1,7 @@
 """Positions whose scale drifts, and what only looks like it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from odometry.checks.findings.finding import Level
@@ -97,3 +99,23 @@ def test_another_disagreement_comes_first():
     found = named(put(run, "pose", yaw=run.pose["yaw"] + 0.4 * np.sin(run.pose["t"] / 15)))
     assert "scale_drifts" not in found
     assert found
+
+
+def test_another_terrain_from_the_middle_on_is_a_step_and_no_drift():
+    """Over a quarter of the way, as where the robot drives along an edge."""
+    run = winding()
+    more = 1 + 0.25 * np.clip((shares(len(run.odometry)) - 0.375) / 0.25, 0.0, 1.0)
+
+    def slips_along(left, right):
+        mean, half = more * (left + right) / 2, (right - left) / 2
+        return mean - half, mean + half
+
+    assert "scale_drifts" not in named(treads(run, slips_along))
+
+
+def test_chords_of_tighter_and_tighter_turns_are_no_drift():
+    at_s = PERIOD_S * np.arange(4800)
+    turn = (0.2 + 1.3 * shares(4800)) * np.sign(np.sin(at_s / 3))
+    run = drive(0.7 + 0.2 * np.sin(at_s / 7), turn)
+    few = replace(run, pose=run.pose.rows(slice(None, None, 20)))
+    assert "scale_drifts" not in named(few)
