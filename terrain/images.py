@@ -136,6 +136,25 @@ def to_grey(image: AnyArray) -> ByteImage:
     return ((percent + 50) // 100).astype(np.uint8)
 
 
+def as_stored(image: AnyArray) -> ByteImage:
+    """An image in memory as `read_image` gives those of files.
+
+    Parameters
+    ----------
+    image : ndarray
+        As `to_bytes` takes it. Of one channel it is grey; an alpha channel is dropped.
+
+    Raises
+    ------
+    ImageError
+        As `to_bytes`.
+    """
+    pixels = to_bytes(image)
+    if pixels.ndim == 2:
+        return pixels
+    return pixels[..., 0] if pixels.shape[2] == 1 else pixels[..., :3]
+
+
 def to_bytes(image: AnyArray) -> ByteImage:
     """Bring an image to 8 bits a channel.
 

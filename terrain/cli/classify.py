@@ -56,7 +56,7 @@ def classify(
     from terrain.cli.labelled_images import (
         print_held_out,
         print_likeness,
-        print_no_ground,
+        print_unnamed,
         readable,
     )
 
@@ -76,7 +76,7 @@ def classify(
         likeness = classifier.likeness(readable(images))
         rows = [_row(classifier, path, likeness) for path in images]
         print_likeness(likeness, classifier.noticed_share_)
-        print_no_ground([row.get("reason", "") for row in rows])
+        print_unnamed([row.get("reason", "") for row in rows])
         click.echo(json.dumps(rows, indent=2) if as_json else _table(classifier, rows))
         all_used = not any("error" in row for row in rows)
     if not all_used:

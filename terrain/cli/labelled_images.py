@@ -59,7 +59,7 @@ def print_held_out(
     ]
     held_out = [each for each in answers if not each.in_training]
     print_likeness(likeness, share)
-    print_no_ground([each.answer.reason for each in held_out])
+    print_unnamed([each.answer.reason for each in held_out])
     score = held_out_score(classifier.classes_.tolist(), held_out)
     if doubted := _of_doubted(named, held_out):
         click.echo(f"Note: {doubted}", err=True)
@@ -192,13 +192,21 @@ def print_likeness(likeness: "Likeness | None", noticed_share: float | None = No
         click.echo(f"Note: {note}", err=True)
 
 
-def print_no_ground(reasons: Sequence[str]) -> None:
-    """Say how many images show no terrain, by the reasons of all, if any does not."""
+def print_unnamed(reasons: Sequence[str]) -> None:
+    """Say how many images show no terrain, or no colours, by the reasons of all, if any does."""
+    from terrain.classification.colour_range import COLOURLESS
     from terrain.classification.no_ground import no_ground_note
 
     note = no_ground_note(reasons)
     if note is not None:
         click.echo(f"Note: {note}", err=True)
+    grey = sum(reason == COLOURLESS for reason in reasons)
+    if grey:
+        click.echo(
+            f"Note: {grey} of {len(reasons)} images are unknown, since they are grey in three "
+            "equal channels and the model was trained with colour",
+            err=True,
+        )
 
 
 def readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:

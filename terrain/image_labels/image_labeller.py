@@ -17,12 +17,13 @@ from terrain.classification.colour_range import ColourRange, colours_of
 from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained import Classifier
+from terrain.classification.trained_on import as_images
 from terrain.classification.training_light import unless_by_light
 from terrain.errors import CameraError, ImageError
 from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.image_label import ImageLabel, answered
 from terrain.image_labels.still_image import StillWatch
-from terrain.images import read_image
+from terrain.images import as_stored, read_image
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
@@ -203,7 +204,7 @@ class ImageLabeller:
     def _read(self, image: Path | ByteImage, name: str) -> ByteImage | str:
         """The image, or why it is not classified."""
         try:
-            image = read_image(image) if isinstance(image, Path) else image
+            image = read_image(image) if isinstance(image, Path) else as_stored(*as_images([image]))
         except ImageError:
             return "the image cannot be read"
         if self._repeats(image):

@@ -5,7 +5,10 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 
+from terrain.classification.colour_range import COLOURLESS
+from terrain.classification.no_ground import SKY
 from terrain.classification.patches import find_photos, load_patches
+from terrain.cli.labelled_images import print_unnamed
 from terrain.cli.train_notes import notes
 
 
@@ -69,3 +72,12 @@ def test_a_terrain_by_a_camera_of_its_own_is_named(tmp_path, rng):
             cv2.imwrite(file, image, [cv2.IMWRITE_JPEG_QUALITY, quality])
     (note,) = said(tmp_path)
     assert "no other terrain have: mud (JPEG compression: 5 of 5). " in note
+
+
+def test_grey_images_before_a_model_in_colour_are_counted(capsys):
+    print_unnamed([COLOURLESS, "", COLOURLESS, SKY])
+    said_of = capsys.readouterr().err
+    assert "Note: 1 of 4 images show no terrain" in said_of
+    assert "Note: 2 of 4 images are unknown, since they are grey in three equal channels" in said_of
+    print_unnamed(["", ""])
+    assert capsys.readouterr().err == ""

@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from PIL import Image
 
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
@@ -36,6 +38,42 @@ def test_images_of_another_size_have_no_label_and_one_note(across_run, classifie
     odd = sum(label.reason == "the image is not of the camera's size" for label in labels)
     assert note.startswith(f"{odd} image(s) are not of the camera's size")
     assert odd > 3
+
+
+KINDS = {
+    "16 bits": lambda image: image.astype(np.uint16) * 257,
+    "shares": lambda image: image / 255,
+    "one channel": lambda image: image[..., None],
+    "alpha": lambda image: np.dstack([image] * 3 + [np.full_like(image, 255)]),
+    "of Pillow": Image.fromarray,
+}
+
+
+@pytest.mark.parametrize("change", KINDS.values(), ids=KINDS)
+def test_images_of_other_kinds_have_the_labels_of_their_bytes(change, across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    frames = [replace(f, image=f.image and read_image(f.image)) for f in list(run.frames())[:60]]
+    changed = [replace(f, image=None if f.image is None else change(f.image)) for f in frames]
+    labels = [
+        [
+            (step.image_label.label, step.image_label.reason)
+            for step in map(LiveOdometry(run.robot, camera=camera, model=classifier).step, some)
+            if step and step.image_label
+        ]
+        for some in (frames, changed)
+    ]
+    assert any(label for label, _ in labels[0])
+    assert labels[0] == labels[1]
+
+
+def test_what_is_no_image_has_no_label_and_ends_nothing(across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live = LiveOdometry(run.robot, camera=camera, model=classifier)
+    odd = [replace(f, image=f.image and np.zeros((4, 4, 2))) for f in list(run.frames())[:60]]
+    labels = [s.image_label for s in map(live.step, odd) if s and s.image_label]
+    assert "the image cannot be read" in {label.reason for label in labels}
 
 
 def test_time_without_tread_speeds_is_noted():
