@@ -9,7 +9,7 @@ from scipy.spatial.distance import cdist
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
-from terrain.classification.look import spread_rows
+from terrain.classification.look import spread_patches
 from terrain.classification.run_limits import drawn_runs, rows_of_photographs
 
 COLOUR_FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
@@ -56,12 +56,8 @@ class ColourRange:
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
         """Of colour patches with terrains (n,) and photographs (n,), at least two of these."""
-        rows = spread_rows(groups)
-        colours, codes, groups = (
-            np.array([colours_of(patches[i]) for i in rows]),
-            codes[rows],
-            groups[rows],
-        )
+        patches, codes, groups = spread_patches(patches, codes, groups)
+        colours = np.array([colours_of(patch) for patch in patches])
         apart = cdist(colours, colours)
         apart[groups[:, None] == groups] = np.inf
         nearest = apart.min(axis=1)
@@ -69,8 +65,8 @@ class ColourRange:
         runs = drawn_runs(photos, np.array([codes[rows[0]] for rows in photos]))
         means = [nearest[run].mean() for run in runs]
         limit = float(max(np.quantile(means, 1 - COLOUR_FALSE_ALARMS), 1e-9))
-        grey = {int(code) for i, code in zip(rows, codes, strict=True) if is_colourless(patches[i])}
-        return cls(colours, limit, knows_grey=grey == set(codes.tolist()))
+        grey = codes[[is_colourless(patch) for patch in patches]]
+        return cls(colours, limit, knows_grey=set(grey.tolist()) == set(codes.tolist()))
 
     def distances(self, colours: FloatArray) -> FloatArray:
         """Of colours (m, 2) to the nearest training patch: as they are, red and blue exchanged."""

@@ -1,5 +1,6 @@
 """Numbers that say how an image looks: exposure, sharpness, scale and compression."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
 
@@ -56,6 +57,14 @@ def looks_of(image: ByteImage, size_px: int) -> FloatArray:
     patches = cut_patches(image, size_px) or [image]
     few = np.linspace(0, len(patches) - 1, min(len(patches), PATCHES_PER_PHOTO)).astype(int)
     return np.array([look_of(patches[i]) for i in few])
+
+
+def spread_patches(
+    patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray
+) -> tuple[list[ByteImage], IntArray, AnyArray]:
+    """Patches of `spread_rows`, with their terrains (n,) and photographs (n,)."""
+    rows = spread_rows(groups)
+    return [patches[row] for row in rows], codes[rows], groups[rows]
 
 
 def spread_rows(groups: AnyArray) -> IntArray:

@@ -4,6 +4,7 @@ What is held out is of the same origin then, so that a model which recognises a 
 compression seems to recognise terrain.
 """
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -67,7 +68,7 @@ SIGNS: dict[str, Callable[[Image.Image], str]] = {
 def _signs(path: Path) -> dict[str, str]:
     """What a file says of its origin; nothing of one that cannot be read."""
     try:
-        with Image.open(path) as image:
+        with warnings.catch_warnings(action="ignore"), Image.open(path) as image:  # damaged tags
             return {name: of(image) for name, of in SIGNS.items()}
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return {}

@@ -10,7 +10,7 @@ from scipy.spatial.distance import cdist
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
-from terrain.classification.look import NUMBERS, look_of, spread_rows
+from terrain.classification.look import NUMBERS, look_of, spread_patches
 from terrain.classification.run_limits import RunLimits
 
 TEXTURE = slice(2, 6)
@@ -52,12 +52,8 @@ class TrainingLook:
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
         """Of square patches with terrains (n,) and photographs (n,), at least two of each."""
-        rows = spread_rows(groups)
-        looks, codes, groups = (
-            np.array([look_of(patches[i]) for i in rows]),
-            codes[rows],
-            groups[rows],
-        )
+        patches, codes, groups = spread_patches(patches, codes, groups)
+        looks = np.array([look_of(patch) for patch in patches])
         unknown = cls(looks, codes, np.zeros(len(looks)))
         own = groups[:, None] == groups
         first = replace(unknown, distances=unknown._nearest(looks, own)[0])

@@ -98,3 +98,11 @@ def test_one_terrain_alone_and_files_that_cannot_be_read(photograph, tmp_path):
 def test_files_without_compression_are_not_set_apart_by_it(photograph):
     of_each = {"grass": {}, "gravel": {"suffix": ".png"}}
     assert set_apart(labelled(photograph, of_each)) == {"grass": "JPEG compression: 8 of 8"}
+
+
+def test_damaged_tags_are_left_out_without_a_warning(photograph):
+    photos = labelled(photograph, {"grass": {"camera": "a phone"}, "gravel": {}})
+    for path in photos:
+        content = path.read_bytes()
+        path.write_bytes(content.replace(b"MM\x00*\x00\x00\x00\x08", b"MM\x00*\x00\x00\xff\x08"))
+    assert set_apart(photos) == {}
