@@ -18,6 +18,7 @@ from odometry.estimation.measurement import Place
 from odometry.estimation.other_places import AGREEING, doubted
 from odometry.estimation.prediction import Prediction
 from odometry.estimation.rest_watch import stand
+from odometry.estimation.stuck_update import StuckUpdate
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
@@ -87,6 +88,7 @@ class IcrEkf:
         self._prediction = Prediction(self.config, track_width)
         self._velocity_update = VelocityUpdate(self.config, track_width)
         self._pose_update = PoseUpdate(self.config, track_width, lever_m)
+        self._stuck = StuckUpdate(self._pose_update.covariance, lever_m)
         self._lever_m = lever_m
 
     def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
@@ -169,6 +171,8 @@ class IcrEkf:
                 lever_m=self._lever_m,
             )
             predicted = predicted._replace(watch=watch._replace(rest=rest))
+        if predicted.watch is not None:
+            after, predicted = self._stuck.followed(estimate, predicted, frame, terrain, after)
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
         covariance, doubt = belief[1], None
         if self.config.watch_sensors and (after.others or after.refused):

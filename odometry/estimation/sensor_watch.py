@@ -10,6 +10,7 @@ from odometry.estimation import (
     gyroscope_watch,
     pose_watch,
     rest_watch,
+    stuck_watch,
     tread_watch,
 )
 from odometry.estimation.bias_watch import BiasWatch
@@ -20,6 +21,7 @@ from odometry.estimation.gyroscope_watch import GyroscopeWatch
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.pose_watch import PoseWatch
 from odometry.estimation.rest_watch import RestWatch
+from odometry.estimation.stuck_watch import StuckWatch
 from odometry.estimation.tread_watch import TreadWatch
 from odometry.frames import Frame
 
@@ -44,6 +46,8 @@ class SensorWatch(NamedTuple):
         Of the poses while the treads stand.
     frozen : FrozenTreads or None
         While the gyroscope says that the robot does not turn as the treads do.
+    stuck : StuckWatch or None
+        Of the poses while the treads drive.
     """
 
     treads: TreadWatch
@@ -54,6 +58,7 @@ class SensorWatch(NamedTuple):
     bias: BiasWatch = BiasWatch()
     rest: RestWatch | None = None
     frozen: FrozenTreads | None = None
+    stuck: StuckWatch | None = None
 
     @property
     def is_doubtful(self) -> bool:
@@ -94,12 +99,6 @@ class Sensed(NamedTuple):
     pose: FloatArray | None
     events: Events
     belief: Gaussian
-
-
-def with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
-    """The watch with another one of the gyroscope's bias."""
-    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen = watch
-    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen)
 
 
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
@@ -166,7 +165,7 @@ def sensed(
     )
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    kept = watch.bias, watch.rest, watch.frozen
+    kept = watch.bias, watch.rest, watch.frozen, watch.stuck
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *kept)
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
 
@@ -242,6 +241,7 @@ def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
     found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
     if watch.rest is not None:
         found += rest_watch.ended(watch.rest, stamp_s)
+    found += stuck_watch.ended(watch.stuck, stamp_s)
     return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
 
 

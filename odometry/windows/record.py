@@ -28,6 +28,7 @@ FEW_POSES = "fewer poses than most windows"
 ODOMETRY_GAP = "gap of odometry.csv"
 POSE_GAP = "gap of pose.csv"
 STATIONARY = "treads stationary"
+STUCK = "robot stuck, or poses held"
 UNKNOWN_TURNS = "unknown count of whole turns"
 
 

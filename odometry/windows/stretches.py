@@ -23,6 +23,7 @@ from odometry.windows.record import (
     summed,
     words,
 )
+from odometry.windows.stuck import without_stuck
 from odometry.windows.windows import Windows, laid_together
 
 MOST_POSITIONS = 25  # of a stretch; the covariance of more takes time and adds little
@@ -161,7 +162,7 @@ def _shared_arm(runs: Sequence[Run]) -> tuple[FloatArray, bool]:
 
 def position_record_with_yaw_rates(run: Run, config: WindowConfig) -> Record:
     """`position_record_of`, its inputs with the gyroscope's yaw rates where there are any."""
-    record = position_record_of(run, config)
+    record = without_stuck(position_record_of(run, config))
     rates = yaw_rates_of(record)
     return replace(record, inputs=replace(record.inputs, yaw_rate_rad_s=rates))
 

@@ -15,6 +15,7 @@ from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.horizons import spatial_horizons
 from odometry.windows.record import STATIONARY, Record, record_of, straddling, summed, words
+from odometry.windows.stuck import without_stuck
 
 STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model
 
@@ -96,8 +97,8 @@ class Windows:
 def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     """Cut runs into windows of one horizon; none straddles a gap or a change of `window`.
 
-    Windows in which the wheels stand still are left out, and those in which the number of whole
-    turns is not known.
+    Windows in which the wheels stand still or the robot is stuck are left out, and those in which
+    the number of whole turns is not known.
 
     Raises
     ------
@@ -114,7 +115,7 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     if not runs:
         raise WindowError("no run was given; expected one or more")
     parts = [
-        _windows_of_record(record_of(run, config), name, config)
+        _windows_of_record(without_stuck(record_of(run, config)), name, config)
         for run, name in zip(runs, run_names(runs), strict=True)
     ]
     if not sum(map(len, parts)):

@@ -1,0 +1,68 @@
+"""Stretches in which poses stay where they are while treads drive: the robot is stuck.
+
+Its wheels spin, or the poses are held: such motion says nothing of a model.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray
+from odometry.windows.record import STUCK, Record
+
+NEAR_M, NEAR_RAD = 0.1, 0.1  # within which poses stay
+TIMES = 4.0  # as far treads must lead
+LEAST_S = 0.8  # that poses stay, once treads have led away: they may be late
+WIDTHS = 2.0  # track widths, as which treads turn a robot that skids
+
+
+def without_stuck(record: Record) -> Record:
+    """The record with a break at every pose of a robot that is stuck."""
+    stuck = stuck_poses(record)
+    broken = (stuck[1:] | stuck[:-1]) & (record.breaks == "")
+    return replace(record, breaks=np.where(broken, STUCK, record.breaks))
+
+
+def stuck_poses(record: Record) -> BoolArray:
+    """Which poses (M,) are measured while the robot is stuck.
+
+    From pose to pose: those that stay near one, in position and yaw, are compared with how far
+    treads have led ahead and turned since. A yaw that is not measured says nothing.
+    """
+    found = np.zeros(len(record.poses), dtype=np.bool_)
+    led_times = _led(record)
+    ends = np.append(np.flatnonzero(record.breaks != ""), len(found) - 1) + 1
+    begin = 0
+    for end in ends:
+        while begin < end:
+            after = begin + _stay(record.poses[begin:end])
+            found[begin:after] = _is_led_away(led_times[begin:after], record.pose_s[begin:after])
+            begin = after
+    return found
+
+
+def _led(record: Record) -> FloatArray:
+    """How far treads have led up to each pose (M, 2): ahead and in turn, in times of near."""
+    steps_s = np.append(np.diff(record.stamps_s), 0.0)
+    left, right = record.inputs.tread_speeds_m_s.T * steps_s
+    width_m = WIDTHS * record.run.robot.track_width
+    ahead, turned = ((left + right) / 2 / NEAR_M, (right - left) / width_m / NEAR_RAD)
+    if np.isnan(record.poses[:, 2]).any():
+        turned = np.zeros_like(turned)
+    led = np.cumsum(np.column_stack([ahead, turned]), axis=0)
+    return np.asarray(np.vstack([np.zeros(2), led[:-1]])[record.pose_samples])
+
+
+def _stay(poses: FloatArray) -> int:
+    """How many of these poses (K, 3), from the first, stay near it."""
+    apart = np.abs(poses - poses[0])
+    moved = np.hypot(apart[:, 0], apart[:, 1]) > NEAR_M
+    moved |= apart[:, 2] > NEAR_RAD
+    return int(np.argmax(moved)) if moved.any() else len(poses)
+
+
+def _is_led_away(led_times: FloatArray, pose_s: FloatArray) -> bool:
+    """Whether treads lead far from the first of poses (K,) that stay near it, and for long."""
+    led = np.abs(led_times - led_times[0]).max(axis=1)
+    away = np.flatnonzero(led > 1)
+    return bool(len(away)) and bool(led.max() >= TIMES and pose_s[-1] - pose_s[away[0]] >= LEAST_S)
