@@ -142,7 +142,8 @@ def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Find
         f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
         "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment, or "
         "the treads read too much there",
-        "Decide by what the robot drove on; cut with --from and --to",
+        "Decide by what the robot drove on; run, identify and compare learn nothing where poses "
+        "surely stay; else cut with --from and --to",
         moments(evidence, at_s),
     )
 
