@@ -105,7 +105,7 @@ def bias_followed(
     if watch is None:
         return belief, watch, ()
     if after.course is not None or after.events or watch.is_gyroscope_held:
-        return belief, watch._replace(bias=BiasWatch(walk=watch.bias.walk)), ()
+        return belief, _with_bias(watch, BiasWatch(walk=watch.bias.walk)), ()
     step_s = stamp_s - estimate.stamp_s
     is_silent = not watch.bias.lasts_s and math.isnan(predicted.yaw_rate_rad_s)
     if is_silent or not step_s:
@@ -119,12 +119,17 @@ def bias_followed(
     bias = bias_watch.watched(watch.bias, rates, step_s, stamp_s, posed=posed)
     estimated_rad_s = float(after.mean[GYRO_BIAS])
     if bias.biases_rad_s is watch.bias.biases_rad_s:
-        return belief, watch._replace(bias=bias), ()
+        return belief, _with_bias(watch, bias), ()
     found, bias = _another_bias(bias, estimated_rad_s)
     if found is None:
-        return belief, watch._replace(bias=bias), ()
+        return belief, _with_bias(watch, bias), ()
     event = bias_watch.change_event(estimated_rad_s, found[0], stamp_s)
-    return bias_watch.changed(belief, found), watch._replace(bias=bias), (event,)
+    return bias_watch.changed(belief, found), _with_bias(watch, bias), (event,)
+
+
+def _with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
+    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen, stuck = watch
+    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen, stuck)
 
 
 def _another_bias(

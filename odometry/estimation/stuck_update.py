@@ -10,10 +10,11 @@ from odometry.estimation import stuck_watch
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_start import started_anew
 from odometry.estimation.measured_updates import Seen
-from odometry.estimation.measurement import Gaussian, Place
+from odometry.estimation.measurement import Gaussian, Place, turned_by_treads
 from odometry.estimation.other_places import SHIFTED_POSES
 from odometry.estimation.prediction import Predicted
-from odometry.estimation.rest_watch import stand
+from odometry.estimation.rest_watch import STILL_M_S
+from odometry.estimation.sensor_watch import SensorWatch
 from odometry.estimation.stuck_watch import StuckWatch
 from odometry.frames import Frame
 
@@ -52,37 +53,32 @@ class StuckUpdate:
             State estimate with its pose.
         """
         assert predicted.watch is not None  # noqa: S101 - for the type checker: it has no other
-        watch = self._led_on(estimate, predicted, frame, terrain, after)
-        before, pose = watch, predicted.pose
-        if watch is not None and pose is not None:
-            watch = stuck_watch.with_pose(watch, pose, frame.stamp_s)
+        watch, pose = predicted.watch.stuck, predicted.pose
+        if pose is None and not frame.in_gap and (watch is None or not watch.is_found):
+            return after, predicted
+        cells = None if pose is None else _cells(pose)
+        if watch is not None and cells is not None and stuck_watch.moves(watch, cells):
+            watch = None
+        if watch is not None and _is_over(watch, estimate, frame, terrain, after):
+            watch = None
+        if watch is not None:
+            watch = _led_on(watch, estimate, predicted, frame.stamp_s)
+        before = watch
+        if watch is not None and cells is not None:
+            watch = stuck_watch.with_pose(watch, cells, frame.stamp_s)
         if watch is not None and watch.is_found:
             after = self._held(estimate, watch, pose, after)
-        elif watch is None and before is not None and pose is not None:
+        elif before is not None and before.is_found and pose is not None:
             after = self._freed(before, frame, pose, after)
-        if watch is None and pose is not None and after.course is None:
+        if watch is not None:
+            watch = watch._replace(at=_cells(after.mean[:3]), at_s=frame.stamp_s)
+        elif cells is not None and after.course is None:
             scaled = self.pose_covariance * after.scale.pose
             belief = after.mean, after.covariance
-            watch = stuck_watch.begun(pose, frame.stamp_s, belief, after.scale, scaled)
-        return after, predicted._replace(watch=predicted.watch._replace(stuck=watch))
-
-    def _led_on(
-        self, estimate: Estimate, predicted: Predicted, frame: Frame, terrain: str, after: Seen
-    ) -> StuckWatch | None:
-        """The watch of before with the step; None where it is at an end."""
-        watch = None if estimate.watch is None else estimate.watch.stuck
-        speeds_m_s = estimate.tread_speeds_m_s
-        is_known = not frame.in_gap and not math.isnan(speeds_m_s[0] + speeds_m_s[1])
-        is_known &= after.course is None and terrain == estimate.terrain
-        came_back = any(event.kind == SHIFTED_POSES for event in after.events)
-        if watch is None or not is_known or came_back:
-            return None
-        if stand(speeds_m_s):
-            return watch if watch.is_found else None
-        step_s = frame.stamp_s - estimate.stamp_s
-        return stuck_watch.led_on(
-            watch, speeds_m_s + estimate.added_speeds_m_s, step_s, predicted.yaw_rate_rad_s
-        )
+            watch = stuck_watch.begun(
+                cells, frame.stamp_s, belief, after.scale, scaled, terrain=terrain
+            )
+        return after, predicted._replace(watch=SensorWatch(*predicted.watch[:-1], watch))
 
     def _held(
         self, estimate: Estimate, watch: StuckWatch, pose: FloatArray | None, after: Seen
@@ -106,9 +102,9 @@ class StuckUpdate:
 
     def _freed(self, watch: StuckWatch, frame: Frame, pose: FloatArray, after: Seen) -> Seen:
         """Where the robot was stuck and a pose is elsewhere: it is there, and nowhere else."""
-        if not watch.is_found or stuck_watch.is_there(watch, pose):
+        if stuck_watch.is_there(watch, _cells(pose)):
             return after
-        events = (*after.events, *stuck_watch.freed(watch, pose, frame.stamp_s))
+        events = (*after.events, *stuck_watch.freed(watch, _cells(pose), frame.stamp_s))
         others = tuple(each for each in after.others if each.since_s < watch.since_s)
         belief = _with_pose_of(watch.before, after.mean, after.covariance)
         scaled = self.pose_covariance * watch.scale.pose
@@ -122,6 +118,36 @@ class StuckUpdate:
             others=others,
             events=events,
         )
+
+
+def _is_over(
+    watch: StuckWatch, estimate: Estimate, frame: Frame, terrain: str, after: Seen
+) -> bool:
+    """Whether nothing is known of the way since the last pose, or all begins anew."""
+    left, right = estimate.tread_speeds_m_s.tolist()
+    if frame.in_gap or math.isnan(left + right) or terrain != watch.terrain:
+        return True
+    if after.course is not None or any(each.kind == SHIFTED_POSES for each in after.events):
+        return True
+    stand = -STILL_M_S <= left <= STILL_M_S and -STILL_M_S <= right <= STILL_M_S
+    return stand and not watch.is_found
+
+
+def _led_on(
+    watch: StuckWatch, estimate: Estimate, predicted: Predicted, stamp_s: float
+) -> StuckWatch:
+    return stuck_watch.led_on(
+        watch,
+        predicted.belief[0],
+        stamp_s,
+        turned_by_treads(estimate.mean, *estimate.tread_speeds_m_s.tolist()),
+        by_gyroscope=not math.isnan(predicted.yaw_rate_rad_s),
+    )
+
+
+def _cells(pose: FloatArray) -> stuck_watch.Pose:
+    x, y, yaw = pose.tolist()
+    return x, y, yaw
 
 
 def _with_pose_of(before: Gaussian, mean: FloatArray, covariance: FloatArray) -> Gaussian:

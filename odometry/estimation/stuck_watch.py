@@ -7,19 +7,14 @@ until they come back to where treads and gyroscope have led.
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.other_places import OtherPlace
-from odometry.estimation.transition import (
-    ALPHA_LEFT,
-    ALPHA_RIGHT,
-    GYRO_BIAS,
-    Y_LEFT,
-    Y_RIGHT,
-    moved_pose,
-)
+from odometry.estimation.transition import GYRO_BIAS
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap_one
 
@@ -31,6 +26,9 @@ STUCK, HELD_POSES = "stuck", "held_poses"  # kinds of events, whose value is how
 JUMP_TIMES = 2.0  # the way of the treads meanwhile: farther from there poses jump
 
 
+Pose = tuple[float, float, float]  # x, y [m], yaw [rad], which may be NaN
+
+
 class StuckWatch(NamedTuple):
     """What is remembered of the place at which poses have stayed.
 
@@ -38,18 +36,22 @@ class StuckWatch(NamedTuple):
     ----------
     since_s : float
         Stamp of the first pose there.
-    place : (3,)
+    place : (x, y, yaw)
         That pose, as measured.
-    near : (float, float)
-        Within which poses are there [m], [rad].
+    terrain : str
+        In force then.
+    near_m, near_rad : float
+        Within which poses are there.
     before : (9,), (9, 9)
         State estimate then.
     scale : NoiseScale
         Estimated then.
-    led, led_last : (3,)
-        Pose to which treads and gyroscope have led since, and had when the last pose was there.
-    treads_rad, gyroscope_rad : float
-        Turn since then by either; NaN where no gyroscope measured one.
+    at, at_s : (x, y, yaw), float
+        Pose of the estimate up to which treads and gyroscope are followed, and its stamp.
+    led, led_last : (x, y, yaw)
+        Pose to which they have led since, and that when the last pose was there.
+    led_m, treads_rad, gyroscope_rad : float
+        How far that is, and the turn by either; NaN where no gyroscope measured one.
     out_s : float
         Stamp since when they have led away; NaN where they have not.
     stayed, away : int
@@ -59,12 +61,17 @@ class StuckWatch(NamedTuple):
     """
 
     since_s: float
-    place: FloatArray
-    near: tuple[float, float]
+    place: Pose
+    terrain: str
+    near_m: float
+    near_rad: float
     before: Gaussian
     scale: NoiseScale
-    led: FloatArray
-    led_last: FloatArray
+    at: Pose
+    at_s: float
+    led: Pose
+    led_last: Pose
+    led_m: float = 0.0
     treads_rad: float = 0.0
     gyroscope_rad: float = math.nan
     out_s: float = math.nan
@@ -72,106 +79,125 @@ class StuckWatch(NamedTuple):
     away: int = 0
     is_found: bool = False
 
-    @property
-    def led_m(self) -> float:
-        """How far treads and gyroscope have led."""
-        return math.hypot(*(self.led - self.before[0][:3])[:2])
-
-    @property
-    def led_times(self) -> float:
-        """How many times the distance or the turn within which poses stay."""
-        is_yaw_known = not (math.isnan(self.place[2]) and math.isnan(self.gyroscope_rad))
-        by_turn = abs(self.treads_rad) / self.near[1] if is_yaw_known else 0.0
-        return max(self.led_m / self.near[0], by_turn)
-
 
 def begun(
-    pose: FloatArray,
+    pose: Pose,
     stamp_s: float,
     belief: Gaussian,
     scale: NoiseScale,
     pose_covariance: FloatArray,
+    *,
+    terrain: str,
 ) -> StuckWatch | None:
-    """At a measured pose (3,), `pose_covariance` (3, 3) as scaled; None without a position."""
+    """At a measured pose, `pose_covariance` (3, 3) as scaled; None without a position."""
     if math.isnan(pose[0] + pose[1]):
         return None
-    sigma_m, sigma_rad = math.sqrt(pose_covariance[0, 0]), math.sqrt(pose_covariance[2, 2])
-    near = max(NEAR_M, SIGMAS * sigma_m), max(NEAR_RAD, SIGMAS * sigma_rad)
-    led = belief[0][:3]
-    return StuckWatch(stamp_s, pose, near, belief, scale, led, led)
+    near_m = max(NEAR_M, SIGMAS * math.sqrt(pose_covariance[0, 0]))
+    near_rad = max(NEAR_RAD, SIGMAS * math.sqrt(pose_covariance[2, 2]))
+    at = _pose_of(belief[0])
+    return StuckWatch(
+        stamp_s, pose, terrain, near_m, near_rad, belief, scale, at, stamp_s, led=at, led_last=at
+    )
+
+
+def _pose_of(mean: FloatArray) -> Pose:
+    x, y, yaw = mean[:3].tolist()
+    return x, y, yaw
+
+
+def moves(watch: StuckWatch, pose: Pose) -> bool:
+    """Whether a pose is elsewhere, of a robot that was not stuck."""
+    return not watch.is_found and not math.isnan(pose[0] + pose[1]) and not is_there(watch, pose)
 
 
 def led_on(
-    watch: StuckWatch, speeds_m_s: FloatArray, step_s: float, yaw_rate_rad_s: float
+    watch: StuckWatch, mean: FloatArray, stamp_s: float, treads_rad_s: float, *, by_gyroscope: bool
 ) -> StuckWatch:
-    """The watch after a step at tread speeds (2,) and a yaw rate of the gyroscope, or NaN."""
-    mean = watch.before[0]
-    led = moved_pose(watch.led, mean, speeds_m_s, step_s, yaw_rate_rad_s=yaw_rate_rad_s)
-    left, right = speeds_m_s.tolist()
-    asked = float(mean[ALPHA_RIGHT]) * right - float(mean[ALPHA_LEFT]) * left
-    treads_rad = watch.treads_rad + asked / float(mean[Y_LEFT] - mean[Y_RIGHT]) * step_s
+    """The watch when the filter predicts a mean (9,), before any pose is measured there.
+
+    `treads_rad_s` is the yaw rate of the treads; `by_gyroscope`: whether that turned the robot.
+    """
+    (x, y, yaw), (at_x, at_y, at_yaw) = mean[:3].tolist(), watch.at
+    turn_rad = wrap_one(yaw - at_yaw)
+    led_x, led_y, led_yaw = watch.led
+    cosine, sine = math.cos(led_yaw - at_yaw), math.sin(led_yaw - at_yaw)
+    along, aside = x - at_x, y - at_y
+    led_x += cosine * along - sine * aside
+    led_y += sine * along + cosine * aside
     turned_rad = watch.gyroscope_rad
-    if not math.isnan(yaw_rate_rad_s):
-        before_rad = 0.0 if math.isnan(turned_rad) else turned_rad
-        turned_rad = before_rad + (yaw_rate_rad_s - float(mean[GYRO_BIAS])) * step_s
-    return watch._replace(led=led, treads_rad=treads_rad, gyroscope_rad=turned_rad)
+    if by_gyroscope:
+        turned_rad = turn_rad + (0.0 if math.isnan(turned_rad) else turned_rad)
+    begin_x, begin_y, _ = watch.before[0][:3].tolist()
+    return watch._replace(
+        led=(led_x, led_y, led_yaw + turn_rad),
+        led_m=math.hypot(led_x - begin_x, led_y - begin_y),
+        treads_rad=watch.treads_rad + treads_rad_s * (stamp_s - watch.at_s),
+        gyroscope_rad=turned_rad,
+    )
 
 
-def with_pose(watch: StuckWatch, pose: FloatArray, stamp_s: float) -> StuckWatch | None:
-    """The watch after a measured pose (3,); None once the robot is elsewhere, or turns there."""
+def with_pose(watch: StuckWatch, pose: Pose, stamp_s: float) -> StuckWatch | None:
+    """The watch after a measured pose; None once the robot is free, or turns there."""
     if math.isnan(pose[0] + pose[1]):
         return watch
     if not is_there(watch, pose):
-        away = watch.away + 1
-        return watch._replace(away=away) if watch.is_found and away < IN_A_ROW else None
+        return watch._replace(away=watch.away + 1) if watch.away + 1 < IN_A_ROW else None
     if _is_turned(watch, pose, stamp_s):
         return None
-    if watch.led_times < 1:
-        return watch._replace(out_s=math.nan, stayed=0, away=0)
+    led_times = _led_times(watch)
+    if led_times < 1:
+        return watch._replace(out_s=math.nan, stayed=0, away=0) if watch.stayed else watch
     out_s = stamp_s if math.isnan(watch.out_s) else watch.out_s
     stayed = watch.stayed + 1
     long_there = stamp_s - out_s >= LEAST_S and stayed >= LEAST_POSES
-    found = watch.is_found or (long_there and watch.led_times >= TIMES)
+    found = watch.is_found or (long_there and led_times >= TIMES)
     return watch._replace(led_last=watch.led, out_s=out_s, stayed=stayed, away=0, is_found=found)
 
 
-def is_there(watch: StuckWatch, pose: FloatArray) -> bool:
-    """Whether a pose (3,) is at the place."""
-    near_m, near_rad = watch.near
-    is_near = math.hypot(*(pose - watch.place)[:2]) <= near_m
-    return is_near and abs(_turn_rad(watch, pose)) <= near_rad
+def _led_times(watch: StuckWatch) -> float:
+    """How many times the distance or the turn within which poses stay treads have led."""
+    is_yaw_known = not (math.isnan(watch.place[2]) and math.isnan(watch.gyroscope_rad))
+    by_turn = abs(watch.treads_rad) / watch.near_rad if is_yaw_known else 0.0
+    return max(watch.led_m / watch.near_m, by_turn)
 
 
-def _is_turned(watch: StuckWatch, pose: FloatArray, stamp_s: float) -> bool:
-    """Whether the gyroscope turned and a pose (3,) did not: then the pose is held."""
+def is_there(watch: StuckWatch, pose: Pose) -> bool:
+    """Whether a pose is at the place."""
+    x, y, _ = watch.place
+    is_near = math.hypot(pose[0] - x, pose[1] - y) <= watch.near_m
+    return is_near and abs(_turn_rad(watch, pose)) <= watch.near_rad
+
+
+def _is_turned(watch: StuckWatch, pose: Pose, stamp_s: float) -> bool:
+    """Whether the gyroscope turned and a pose did not: then the pose is held."""
     if math.isnan(watch.gyroscope_rad):
         return False
-    variance = float(watch.before[1][GYRO_BIAS, GYRO_BIAS])
-    drift_rad = SIGMAS * math.sqrt(variance) * (stamp_s - watch.since_s)
+    sigma_rad_s = math.sqrt(watch.before[1][GYRO_BIAS, GYRO_BIAS])
+    drift_rad = SIGMAS * sigma_rad_s * (stamp_s - watch.since_s)
     apart_rad = wrap_one(watch.gyroscope_rad - _turn_rad(watch, pose))
-    return abs(apart_rad) > watch.near[1] / 2 + drift_rad
+    return abs(apart_rad) > watch.near_rad / 2 + drift_rad
 
 
-def _turn_rad(watch: StuckWatch, pose: FloatArray) -> float:
-    """Measured turn to a pose (3,); 0 where none is known."""
-    turn_rad = float(pose[2] - watch.place[2])
+def _turn_rad(watch: StuckWatch, pose: Pose) -> float:
+    """Measured turn to a pose; 0 where none is known."""
+    turn_rad = pose[2] - watch.place[2]
     return 0.0 if math.isnan(turn_rad) else wrap_one(turn_rad)
 
 
 def where_treads_led(watch: StuckWatch, mean: FloatArray, near: int) -> OtherPlace:
     """Where the robot is if its poses are held, of an estimate with a mean (9,)."""
-    motion = se2.compose(watch.led, se2.inverse(mean[:3]))
+    motion = se2.compose(np.array(watch.led), se2.inverse(mean[:3]))
     return OtherPlace(watch.since_s, motion, watch.before[1][:3, :3], near)
 
 
-def freed(watch: StuckWatch, pose: FloatArray, stamp_s: float) -> tuple[FilterEvent, ...]:
-    """The event of a robot that was stuck until a pose (3,) elsewhere, or of poses held until it.
+def freed(watch: StuckWatch, pose: Pose, stamp_s: float) -> tuple[FilterEvent, ...]:
+    """The event of a robot that was stuck until a pose elsewhere, or of poses held until it.
 
     Poses that were held jump: no robot goes farther than its treads.
     """
-    went_m = math.hypot(*(watch.led - watch.led_last)[:2])
-    jump_m = math.hypot(*(pose - watch.place)[:2])
-    if jump_m <= 2 * watch.near[0] + JUMP_TIMES * went_m:
+    went_m = math.dist(watch.led[:2], watch.led_last[:2])
+    jump_m = math.dist(pose[:2], watch.place[:2])
+    if jump_m <= 2 * watch.near_m + JUMP_TIMES * went_m:
         return ended(watch, stamp_s)
     text = (
         f"{_stayed(watch, stamp_s)}, and jumped by {jump_m:.2f} m then: they were held, and the "
@@ -193,7 +219,7 @@ def ended(watch: StuckWatch | None, stamp_s: float) -> tuple[FilterEvent, ...]:
 
 def _stayed(watch: StuckWatch, stamp_s: float) -> str:
     return (
-        f"the poses stayed within {watch.near[0]:.2f} m for {stamp_s - watch.since_s:.1f} s while "
+        f"the poses stayed within {watch.near_m:.2f} m for {stamp_s - watch.since_s:.1f} s while "
         f"treads drove {watch.led_m:.2f} m and turned by "
         f"{math.degrees(abs(watch.treads_rad)):.0f} degrees"
     )
