@@ -37,7 +37,8 @@ def is_whole(encoded: bytes) -> bool:
     if encoded.startswith(PNG):
         return encoded.rfind(b"IEND") > encoded.rfind(b"IDAT")
     if encoded.startswith(b"\xff\xd8"):  # end of image, after the last start of scan
-        return encoded.rfind(b"\xff\xd9") > encoded.rfind(b"\xff\xda")
+        end = encoded.rfind(b"\xff\xd9")
+        return end >= 0 and encoded.find(b"\xff\xda", end) < 0
     return True
 
 

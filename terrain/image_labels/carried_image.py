@@ -57,11 +57,11 @@ def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[Any
     there = pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
     size = places.shape[1] * NODE_PX, places.shape[0] * NODE_PX
     at_pixels = cv2.resize(there.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
-    u, v = cv2.split(at_pixels[NODE_PX:, NODE_PX:][:height, :width])
-    known = (u >= 0) & (u <= width - 1) & (v >= 0) & (v <= height - 1)  # NaN is not
-    for nowhere in (u, v):
-        cv2.patchNaNs(nowhere, -1.0)
-    return cv2.remap(image, u, v, cv2.INTER_LINEAR), np.asarray(known)
+    at_pixels = at_pixels[NODE_PX:, NODE_PX:][:height, :width]
+    known = cv2.inRange(at_pixels, (0.0, 0.0), (width - 1.0, height - 1.0))  # NaN is not
+    cv2.patchNaNs(at_pixels, -1.0)
+    carried = cv2.remap(image, at_pixels, None, cv2.INTER_LINEAR)  # type: ignore[call-overload]
+    return np.asarray(carried), np.asarray(known > 0)
 
 
 def details_between(image: AnyArray) -> AnyArray:
@@ -71,6 +71,7 @@ def details_between(image: AnyArray) -> AnyArray:
     return np.asarray(fine - coarse)
 
 
+@lru_cache(maxsize=4)  # as above
 def middles(shape: tuple[int, ...], size_px: int) -> FloatArray:
     """Middles (N, 2) of squares in an image of a shape (h, w), row by row."""
     u, v = np.meshgrid(np.arange(shape[1] // size_px), np.arange(shape[0] // size_px))

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from terrain.camera.camera import Camera
-from terrain.image_labels.carried_image import carried_back
+from terrain.image_labels.carried_image import carried_back, tiles
 
 WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
 OCTAVES, SMOOTHED_PX = 3, 3  # finest first: what a mean over so many pixels takes away of each
@@ -99,7 +99,7 @@ def change_of_details(
     if before.image.shape != after.shape:
         return None
     carried, known = carried_back(camera, after, step)
-    common = _means(_whole_tiles(known.astype(np.float32)), TILE_PX) > 1 - 0.5 / TILE_PX**2
+    common = tiles(known, TILE_PX).all(axis=1)
     if np.count_nonzero(common) < FEWEST_TILES:
         return None
     there = TileDetails.of(carried)
