@@ -65,12 +65,19 @@ def fixed_parts(run: Run, camera: Camera, views: TerrainViews) -> FixedParts | N
     near = _near_terrain(camera, (images.shape[1], images.shape[2]))
     if not near.any():
         return None
-    spans = [images, *np.array_split(images, min(SPANS, len(images) // FEWEST))]
-    found = np.any([_fixed(span, near) for span in spans], axis=0)
+    details = np.stack([tiles(details_between(image), TILE_PX) for image in images])
+    spans = [slice(None), *_spans(len(images))]
+    found = np.any([_fixed(images[span], details[span], near) for span in spans], axis=0)
     share = float(found.ravel()[near].mean())
     if not 0 < share < MOST_SHARE:
         return None
     return FixedParts(tuple(_outlines(found, camera.image_size)), share, len(images))
+
+
+def _spans(count: int) -> list[slice]:
+    """Parts of so many images that are looked at by themselves."""
+    parts = np.array_split(np.arange(count), min(SPANS, count // FEWEST))
+    return [slice(int(part[0]), int(part[-1]) + 1) for part in parts]
 
 
 def robot_in_images(parts: FixedParts | None) -> Iterator[Finding]:
@@ -128,13 +135,12 @@ def _alike(of_tiles: AnyArray) -> FloatArray:
     return np.asarray((count * (units.mean(axis=0) ** 2).sum(axis=1) - 1) / (count - 1))
 
 
-def _fixed(images: AnyArray, near: BoolArray) -> BoolArray:
+def _fixed(images: AnyArray, of_tiles: AnyArray, near: BoolArray) -> BoolArray:
     """Tiles (rows, columns) that stay in images (N, h, w), with those beside them.
 
-    All of them where the camera is frozen.
+    By the details (N, K, pixels) of all tiles. All of them where the camera is frozen.
     """
     shape = tuple(length // TILE_PX for length in images.shape[1:])
-    of_tiles = np.stack([tiles(details_between(image), TILE_PX) for image in images])
     sizes = np.sqrt((of_tiles**2).mean(axis=2))
     alike = _alike(of_tiles)
     fixed = near & (alike > FIXED) & (np.median(sizes, axis=0) > LEAST_DETAIL)

@@ -77,7 +77,7 @@ class TerrainViews:
 
     def _seen(self, name: str) -> "_Seen | None":
         if name not in self._kept:
-            image = self.grey(name)
+            image = self._decoded(name)
             self._kept[name] = None if image is None else self._looked_at(image)
         return self._kept[name]
 
@@ -116,13 +116,17 @@ class TerrainViews:
         fine = image - cv2.GaussianBlur(image.astype(np.float32), (0, 0), FINE_PX)
         blank = texture < max(TEXTURE, NOT_NOISE * float(fine.std()))
         if not found:
-            return _Seen(None, details, blank)
+            return _Seen(image, None, details, blank)
         pixels = np.array([one.pt for one in found], dtype=np.float64)
         pixels = (pixels + 0.5) * self.size[0] / image.shape[1] - 0.5
-        return _Seen((pixels, described), details, blank)
+        return _Seen(image, (pixels, described), details, blank)
 
     def grey(self, name: str) -> AnyArray | None:
         """An image of the camera's size, reduced, in grey."""
+        seen = self._kept.get(name)
+        return self._decoded(name) if seen is None else seen.image
+
+    def _decoded(self, name: str) -> AnyArray | None:
         try:
             file = self.run.folder / name
             encoded = read_bytes(file, ImageError, MOST_BYTES, "an image has less")
@@ -147,6 +151,7 @@ class TerrainViews:
 class _Seen:
     """What is kept of an image."""
 
+    image: AnyArray
     features: Features | None
     details: FloatArray
     is_blank: bool
