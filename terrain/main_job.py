@@ -27,7 +27,6 @@ from odometry.terrain_sources import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.believed_images import as_checked
 from terrain.checks.recording import checked_run
-from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.result.contradictions import contradictions, labels_beneath
 from terrain.result.contradictions_so_far import Contradiction
@@ -49,7 +48,8 @@ from terrain.sources.watcher import TerrainWatcher
 
 if TYPE_CHECKING:
     from odometry.checks.findings.finding import CheckReport
-    from terrain.classification.trained import Classifier
+    from terrain.classification.answer import Classifier
+    from terrain.classification.classifier import TerrainClassifier
 
 __all__ = ["RunResult", "run_odometry"]
 
@@ -57,7 +57,7 @@ __all__ = ["RunResult", "run_odometry"]
 def run_odometry(
     run: Run | str | Path,
     *,
-    model: TerrainClassifier | str | Path | None = None,
+    model: "TerrainClassifier | str | Path | None" = None,
     parameters: ParameterSet | str | Path | None = None,
     vision: bool = True,
     terrain: str | None = None,
@@ -241,5 +241,9 @@ def _sensor_effects(parameters: ParameterSet) -> tuple[Added, ...]:
     )
 
 
-def _trained(model: TerrainClassifier | str | Path | None) -> TerrainClassifier | None:
-    return TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+def _trained(model: "TerrainClassifier | str | Path | None") -> "TerrainClassifier | None":
+    if not isinstance(model, str | Path):
+        return model
+    from terrain.classification.classifier import TerrainClassifier  # noqa: PLC0415 - slow to load
+
+    return TerrainClassifier.load(Path(model))

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,9 +13,11 @@ from odometry.parameters import ParameterSet
 from odometry.run import Run
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classification
-from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.region.region import NoRegion, predict_region
+
+if TYPE_CHECKING:
+    from terrain.classification.classifier import TerrainClassifier
 
 STRAIGHT = np.array([1.0, 0.0, 0.0])
 
@@ -29,7 +31,7 @@ class OnePatchClassifier:
         Fitted. Its average over patches and its rejection are not used.
     """
 
-    def __init__(self, classifier: TerrainClassifier) -> None:
+    def __init__(self, classifier: "TerrainClassifier") -> None:
         self._classifier = classifier
         self.classes_ = classifier.classes_
         self.colour_ = classifier.colour_
@@ -121,7 +123,7 @@ def with_preset(
     config: Config,
     *,
     source: str,
-    model: TerrainClassifier | None,
+    model: "TerrainClassifier | None",
     parameters: ParameterSet,
 ) -> tuple[Config, OnePatchClassifier]:
     """Settings and classifier of a published system on a run.

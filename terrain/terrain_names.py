@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from odometry.parameters import ParameterSet
 from odometry.run import UNKNOWN
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.spelling import plain_name
 
 

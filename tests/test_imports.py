@@ -154,15 +154,23 @@ def test_no_file_has_the_name_of_a_public_name(package):
     assert not files & set(module.__all__)
 
 
-def test_importing_the_packages_imports_nothing_heavy():
-    code = (
-        "import sys, terrain, odometry, terrain.cli.main\n"
-        f"print([name for name in {HEAVY!r} if name in sys.modules])"
-    )
+def loaded_with(modules, names):
+    """Which of the names a new process has loaded once it has imported the modules."""
+    code = f"import sys, {modules}\nprint([name for name in {names!r} if name in sys.modules])"
     finished = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT
     )
-    assert finished.stdout.strip() == "[]"
+    return finished.stdout.strip()
+
+
+def test_importing_the_packages_imports_nothing_heavy():
+    assert loaded_with("terrain, odometry, terrain.cli.main", HEAVY) == "[]"
+
+
+@pytest.mark.parametrize("module", ["checks.recording", "main_job", "results"])
+def test_what_needs_no_classifier_loads_none(module):
+    """Scikit-learn, with pandas, takes as long to load as the rest of a check."""
+    assert loaded_with(f"terrain.{module}", ("sklearn", "pandas")) == "[]"
 
 
 @pytest.mark.parametrize("name", [name for name in FILES if name.startswith("odometry")])

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.run import Robot
 from terrain.camera.camera import Camera
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.region.footprint_parts import Rectangle
 from terrain.region.region import NoRegion, Region, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, scale_mismatch

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,14 +31,16 @@ from terrain.checks.image_motion import image_motion
 from terrain.checks.image_sizes import other_sizes
 from terrain.checks.image_values import Values, grey_of, image_values, values_of
 from terrain.checks.region_ahead import region_ahead, vision_model
-from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
 from terrain.region.region import Region
 from terrain.region.warp import pixel_view
 
+if TYPE_CHECKING:
+    from terrain.classification.classifier import TerrainClassifier
+
 
 def check_run(
-    run: Run | str | Path, model: TerrainClassifier | str | Path | None = None
+    run: Run | str | Path, model: "TerrainClassifier | str | Path | None" = None
 ) -> CheckReport:
     """What is odd about a recording and its camera: likeliest cause, remedy, most important first.
 
@@ -65,7 +67,7 @@ def check_run(
     >>> terrain.check_run(odometry.shipped_data() / "runs" / "demo").misleads
     False
     """
-    classifier = TerrainClassifier.load(Path(model)) if isinstance(model, str | Path) else model
+    classifier = _loaded(model) if isinstance(model, str | Path) else model
     if not isinstance(run, Run):
         try:
             run = Run.read(run)
@@ -78,7 +80,13 @@ def check_run(
     return report.with_more(*_motion(run, report))
 
 
-def _findings(run: Run, classifier: TerrainClassifier | None) -> Iterator[Finding]:
+def _loaded(model: str | Path) -> "TerrainClassifier":
+    from terrain.classification.classifier import TerrainClassifier  # noqa: PLC0415 - slow to load
+
+    return TerrainClassifier.load(Path(model))
+
+
+def _findings(run: Run, classifier: "TerrainClassifier | None") -> Iterator[Finding]:
     table = run.settings.get("camera")
     if run.images is None:
         if table is not None:

@@ -1,7 +1,7 @@
 """Whether the image shows the terrain where the robot will be, and a classifier can read it."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,10 +18,12 @@ from terrain.checks.other_cameras import (
     tilted,
     too_far,
 )
-from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError
 from terrain.region.region import NoRegion, Region, RegionConfig
 from terrain.region.warp import scale_mismatch
+
+if TYPE_CHECKING:
+    from terrain.classification.classifier import TerrainClassifier
 
 HORIZON_M = 1e4
 USUAL_HEIGHT_M = (0.2, 3.0)  # of cameras on skid-steer robots
@@ -143,7 +145,7 @@ def _seen(camera: Camera, table: Mapping[str, Any]) -> str:
 
 
 def vision_model(
-    classifier: TerrainClassifier, camera: Camera | None, robot: Robot
+    classifier: "TerrainClassifier", camera: Camera | None, robot: Robot
 ) -> Iterator[Finding]:
     """No metric scale, or one at which this camera's images cannot be read."""
     scale = classifier.metres_per_pixel

@@ -1,8 +1,10 @@
-"""The answer of a classifier for one image."""
+"""The answer of a classifier for one image, and what gives it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Protocol, Self
 
+from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.noticed_alterations import may_pass_unnoticed
@@ -107,3 +109,18 @@ class Classification:
         if self.probability_right >= PROBABLE:
             return self
         return replace(self, label=UNKNOWN, reason=IMPROBABLE)
+
+
+class Classifier(Protocol):
+    """Whatever names the terrain of images of at least the patch size."""
+
+    classes_: AnyArray
+    colour_: bool
+    patch_size_px: int
+    metres_per_pixel: float | None
+
+    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
+        """One answer for each image."""
+
+    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
+        """Rows and columns in the middle of an image of such a shape: all that is looked at."""

@@ -7,12 +7,11 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.errors import ConfigError
-from terrain.classification.answer import Classification
+from terrain.classification.answer import Classification, Classifier
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.config import ClassifierConfig
 from terrain.classification.metric import ClippedScaler
 from terrain.classification.neighbours import DiscriminantNeighbours
-from terrain.classification.trained import Classifier
 
 LEAST = 0.01  # of a deviation in training: a feature that varies less is taken as in training
 TWO_CAMERAS = "own statistics are for another camera than that of training, same camera is not"

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import replace
-from typing import Protocol, Self
+from typing import Self
 
 import numpy as np
 from sklearn.utils.validation import check_is_fitted, validate_data
@@ -23,21 +23,6 @@ from terrain.classification.patches import cut_patches
 from terrain.classification.rejection import as_of_one_patch
 from terrain.classification.trained_on import as_images, holds_images
 from terrain.errors import ImageError
-
-
-class Classifier(Protocol):
-    """Whatever names the terrain of images of at least the patch size."""
-
-    classes_: AnyArray
-    colour_: bool
-    patch_size_px: int
-    metres_per_pixel: float | None
-
-    def classify(self, images: Sequence[ByteImage]) -> list[Classification]:
-        """One answer for each image."""
-
-    def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
-        """Rows and columns in the middle of an image of such a shape: all that is looked at."""
 
 
 class TrainedClassifier(ModelFile):

@@ -7,10 +7,8 @@ import numpy as np
 
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
-from terrain.classification.answer import Classification
+from terrain.classification.answer import Classification, Classifier
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
-from terrain.classification.own_statistics import OwnStatisticsClassifier
-from terrain.classification.trained import Classifier
 
 # Of the light of training. Runs of photographs held out, of terrain that is known, lie within.
 USUAL_LIGHT = 0.75, 1.33
@@ -42,6 +40,8 @@ def unless_by_light(
     """
     if likeness is None or not likeness.is_unlike or likeness.images < FEWEST_IMAGES:
         return list(answers)
+    from terrain.classification.own_statistics import OwnStatisticsClassifier  # noqa: PLC0415 - slow to load
+
     is_usual = USUAL_LIGHT[0] < likeness.light < USUAL_LIGHT[1]
     if is_usual or isinstance(classifier, OwnStatisticsClassifier):
         return list(answers)

@@ -16,7 +16,7 @@ from terrain.calibration.mount_sources import MountSource
 from terrain.camera.camera import Camera
 from terrain.checks.image_motion import image_motion
 from terrain.checks.region_ahead import no_mount, region_ahead
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.region.region import NoRegion, RegionConfig
 
 if TYPE_CHECKING:

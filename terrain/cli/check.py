@@ -11,6 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from odometry.checks.findings.finding import CheckReport
+    from terrain.classification.classifier import TerrainClassifier
 
 NO_DRIVE = ("one_motion", "treads_still")  # `identify` refuses such a run alone
 
@@ -44,20 +45,18 @@ def check(
       terrain-odometry check my_run other_run --picture pictures
     """
     from terrain.checks.recording import check_run
-    from terrain.classification.classifier import TerrainClassifier
     from terrain.cli.outputs import claim_picture
-    from terrain.report.check_figure import write_check_figure
 
     files = _picture_files(folders, picture) if picture is not None else {}
     for file in files.values():
         claim_picture(file)
-    classifier = TerrainClassifier.load(model) if model is not None else None
+    classifier = None if model is None else _loaded(model)
     reports = {}
     for folder in dict.fromkeys(folders):
         reports[folder] = check_run(folder, classifier)
         if not as_json:
             print_findings(folder, reports[folder])
-        if folder in files and write_check_figure(reports[folder], files[folder]) is None:
+        if folder in files and not _drawn(reports[folder], files[folder]):
             click.echo(f"Note: {folder}: no picture, it is refused", err=True)
     if as_json:
         click.echo(json.dumps([report.to_table() for report in reports.values()], indent=2))
@@ -65,6 +64,18 @@ def check(
         click.echo(next_step(reports, files))
     if any(report.misleads for report in reports.values()):
         sys.exit(1)
+
+
+def _loaded(model: Path) -> "TerrainClassifier":
+    from terrain.classification.classifier import TerrainClassifier
+
+    return TerrainClassifier.load(model)
+
+
+def _drawn(report: "CheckReport", file: Path) -> bool:
+    from terrain.report.check_figure import write_check_figure
+
+    return write_check_figure(report, file) is not None
 
 
 def print_findings(folder: Path, report: "CheckReport") -> None:

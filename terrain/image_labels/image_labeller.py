@@ -13,10 +13,10 @@ from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
+from terrain.classification.answer import Classifier
 from terrain.classification.colour_range import ColourRange, colours_of
 from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
-from terrain.classification.trained import Classifier
 from terrain.classification.trained_on import as_images
 from terrain.classification.training_light import unless_by_light
 from terrain.errors import CameraError, ImageError

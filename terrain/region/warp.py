@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 from terrain.camera.camera import Camera
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.region.region import COARSE, Rectangle
 
 

@@ -6,8 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
 from terrain.camera.camera import Camera
-from terrain.classification.answer import Classification
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classification, Classifier
 from terrain.errors import TerrainError
 from terrain.region.region import Rectangle, RegionConfig
 from terrain.region.warp import ground_sampling_m, ground_view

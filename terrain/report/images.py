@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from odometry.report.figure import save_figure, show_run_time
 from odometry.report.html import Picture
 from terrain.camera.camera import Camera
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.image_labels.image_label import ImageLabel
 from terrain.images import read_image
 from terrain.region.whole_image import classify_ground

@@ -9,7 +9,6 @@ from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.noticed_alterations import unnoticed
-from terrain.classification.own_statistics import OwnStatisticsClassifier
 from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
 from terrain.result.evaluation_notes import event_line
@@ -61,6 +60,8 @@ def _unnamed(result: RunResult) -> list[str]:
 
 def _images(watcher: TerrainWatcher) -> list[str]:
     """Images that are unlike those of training, show no terrain, or have no name."""
+    from terrain.classification.own_statistics import OwnStatisticsClassifier  # noqa: PLC0415 - slow to load
+
     found = []
     if isinstance(watcher.classifier, OwnStatisticsClassifier):
         found.append(watcher.classifier.described)

@@ -19,8 +19,7 @@ from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
 from odometry.terrain_sources import NamedTerrain, labelled_terrain
 from terrain.camera.camera import Camera
-from terrain.classification.own_statistics import used_as
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.config import Config
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.feel_labels import FeelLabels
@@ -164,6 +163,8 @@ def _watcher(
             f"{'images.csv' if run.images is None else '[camera] in run.toml'}; "
             "a model (--model) reads images: leave it out, or turn vision off (--no-vision)"
         )
+    from terrain.classification.own_statistics import used_as  # noqa: PLC0415 - slow to load
+
     if feel is not None:
         check_weighed(config)
     camera = Camera.from_table(run.settings["camera"], str(run.folder / "run.toml"))

@@ -15,7 +15,7 @@ from odometry.geometry import se2
 from odometry.run import UNKNOWN, Robot
 from odometry.run_terrains import Footing
 from terrain.camera.camera import Camera
-from terrain.classification.trained import Classifier
+from terrain.classification.answer import Classifier
 from terrain.image_labels.distance_track import DistanceTrack
 from terrain.image_labels.image_label import ImageLabel
 from terrain.image_labels.image_labeller import ImageLabeller
