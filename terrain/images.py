@@ -11,6 +11,9 @@ from terrain.errors import ImageError
 from terrain.image_size import PIXELS, is_whole, stated_size
 
 IMAGE_BYTES = 256 * 1024**2
+# Weights of red, green and blue, and what rounds half up once digits are cut off: sums are whole
+# hundredths, so that a tenth of one more outweighs rounding errors (1e-4) and rounds none up
+ROUNDED_GREY = np.array([[0.30, 0.59, 0.11, 0.501]], dtype=np.float32)
 
 
 def read_image(path: Path | str) -> ByteImage:
@@ -96,7 +99,8 @@ def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
         raise ImageError(f"{where}: {error}") from error
     if image.ndim == 2:
         return image
-    return np.ascontiguousarray(image[..., 2::-1])  # OpenCV decodes to B, G, R(, A)
+    to_rgb = cv2.COLOR_BGR2RGB if image.shape[2] == 3 else cv2.COLOR_BGRA2RGB
+    return np.asarray(cv2.cvtColor(image, to_rgb), np.uint8)
 
 
 def to_grey(image: AnyArray) -> ByteImage:
@@ -131,9 +135,8 @@ def to_grey(image: AnyArray) -> ByteImage:
     image = to_bytes(image)
     if image.ndim == 2 or image.shape[2] == 1:
         return np.ascontiguousarray(image.reshape(image.shape[:2]))
-    red, green, blue = (channel.astype(np.uint16) for channel in cv2.split(image)[:3])
-    percent = 30 * red + 59 * green + 11 * blue  # eq. 18, exactly: at most 25500
-    return ((percent + 50) // 100).astype(np.uint8)
+    grey = cv2.transform(image[..., :3].astype(np.float32), ROUNDED_GREY)  # eq. 18, exactly
+    return np.asarray(grey).astype(np.uint8)
 
 
 def as_stored(image: AnyArray) -> ByteImage:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
+import cv2
 import numpy as np
 from scipy.spatial.distance import cdist
 
@@ -24,8 +25,9 @@ EXCHANGED_RATIO, EXCHANGED_LEAST = 0.5, 0.05
 
 def is_colourless(image: ByteImage) -> bool:
     """Whether an image (H, W, 3) is a grey one in three channels."""
-    channels = image.astype(np.int16)
-    return bool(np.ptp(channels, axis=2).max() <= COLOURLESS_GREYS)
+    channels = cv2.split(image)
+    spread = np.maximum.reduce(channels) - np.minimum.reduce(channels)
+    return bool(spread.max() <= COLOURLESS_GREYS)
 
 
 def colours_of(image: ByteImage) -> FloatArray:

@@ -31,6 +31,14 @@ def test_grey_is_the_weighted_sum_in_rgb_order(image):
         assert grey == (30 * red + 59 * green + 11 * blue + 50) // 100
 
 
+@pytest.mark.parametrize("green", range(0, 256, 15))
+def test_no_colour_is_rounded_the_wrong_way(green):
+    """Sums are made of floats; exact ones lie a hundredth apart."""
+    red, blue = np.meshgrid(np.arange(256), np.arange(256))
+    image = np.stack([red, np.full_like(red, green), blue], axis=-1).astype(np.uint8)
+    np.testing.assert_array_equal(to_grey(image), (30 * red + 59 * green + 11 * blue + 50) // 100)
+
+
 def test_red_green_and_blue_weigh_as_in_the_paper():
     primaries = 200 * np.eye(3, dtype=np.uint8)[None]
     np.testing.assert_array_equal(to_grey(primaries), [[60, 118, 22]])
