@@ -156,18 +156,17 @@ def _padded(distortion: FloatArray) -> FloatArray:
 def _lens(points: FloatArray, coefficients: FloatArray) -> FloatArray:
     """Apply the radial, tangential and thin prism terms."""
     k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = coefficients.tolist()
-    x, y = points.T
+    x, y = np.ascontiguousarray(points.T)
     square = x * x + y * y
-    numerator = 1 + square * (k1 + square * (k2 + square * k3))
-    denominator = 1 + square * (k4 + square * (k5 + square * k6))
-    radial = numerator / denominator
+    radial = 1 + square * (k1 + square * (k2 + square * k3))
+    if k4 or k5 or k6:
+        radial /= 1 + square * (k4 + square * (k5 + square * k6))
     seen = np.empty_like(points)
-    seen[:, 0] = (
-        x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x) + square * (s1 + s2 * square)
-    )
-    seen[:, 1] = (
-        y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y + square * (s3 + s4 * square)
-    )
+    seen[:, 0] = x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x)
+    seen[:, 1] = y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y
+    if s1 or s2 or s3 or s4:
+        seen[:, 0] += square * (s1 + s2 * square)
+        seen[:, 1] += square * (s3 + s4 * square)
     return seen
 
 

@@ -196,15 +196,21 @@ def _smallest_stretch(by_x: FloatArray, by_y: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(squares - spread, 0.0) / 2))
 
 
+@lru_cache(maxsize=1)  # of CELLS, for each image
+def _blocks(cells: int) -> tuple[IntArray, IntArray, IntArray]:
+    """First and end (n,) of all runs of cells, and the sizes (n, n) of blocks of two of them."""
+    first, end = np.triu_indices(cells + 1, k=1)
+    return first, end, np.multiply.outer(end - first, end - first)
+
+
 def _largest_block(cells: BoolArray) -> IntArray:
     """First and end row, first and end column of the largest block of true cells (n, n)."""
     if not cells.any():
         return np.zeros(4, dtype=int)
     count = np.zeros(np.add(cells.shape, 1), dtype=int)  # of true cells above and left
     count[1:, 1:] = cells.cumsum(axis=0).cumsum(axis=1)
-    first, end = np.triu_indices(len(cells) + 1, k=1)
+    first, end, size = _blocks(len(cells))
     rows = count[end] - count[first]  # (pairs of rows, columns + 1)
     inside = rows[:, end] - rows[:, first]
-    size = (end - first)[:, None] * (end - first)
     row, column = np.unravel_index(np.where(inside == size, size, 0).argmax(), size.shape)
     return np.array([first[row], end[row], first[column], end[column]])
