@@ -23,6 +23,7 @@ from unittest.mock import patch
 import click
 import pdoc
 from numpy.typing import ArrayLike
+from pdoc.doc_types import resolve_annotations
 
 from odometry import arrays
 from terrain.cli.main import VERBS, cli
@@ -69,7 +70,8 @@ def named_by(value: object) -> Iterator[type]:
     """Our classes that its signature, its fields or its bases name."""
     annotated = [*functions_of(value), *([value] if inspect.isclass(value) else [])]
     for each in annotated:
-        for annotation in typing.get_type_hints(each).values():
+        given, module = inspect.get_annotations(each), sys.modules[each.__module__]
+        for annotation in resolve_annotations(given, module, None, each.__qualname__).values():
             yield from classes_in(annotation)
     if inspect.isclass(value):
         yield from filter(is_ours, value.__mro__[1:])
