@@ -36,6 +36,9 @@ class Likeness:
         fewer than five images and of files before version 0.36.
     exchanged : bool
         Whether the colours are much nearer to training with red and blue exchanged.
+    grey_beyond : float
+        How probably the images are nearly grey over what runs of training photographs are: see
+        `NearlyGrey`. 0 where `colour_beyond` is, and of files before version 0.37.
     """
 
     images: int
@@ -47,6 +50,7 @@ class Likeness:
     light: float = 1.0
     colour_beyond: float = 0.0
     exchanged: bool = False
+    grey_beyond: float = 0.0
 
     @property
     def is_unlike(self) -> bool | None:
@@ -83,6 +87,14 @@ class Likeness:
 
     @property
     def _of_colours(self) -> str:
+        if self.grey_beyond > 1:
+            return (
+                "the images are nearly grey: red and blue follow green as in a grey image with a "
+                "tint, or hardly leave it (a night camera, low saturation, a filter), more than in "
+                "the training photographs of any terrain. The model uses colour: names may be "
+                "wrong, and are unknown where it is much. Train without --colour, or with images "
+                "of this camera in this light"
+            )
         if self.exchanged:
             return (
                 "with red and blue exchanged the images would be much more like the training "

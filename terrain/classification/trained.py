@@ -12,7 +12,7 @@ from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.calibration import tempered
-from terrain.classification.colour_range import COLOURLESS, colours_of, is_colourless
+from terrain.classification.colour_range import COLOURLESS, is_colourless
 from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.look import look_of, looks_of, middle_of
@@ -185,21 +185,21 @@ class TrainedClassifier(ModelFile):
         """
         if self.training_look_ is None:
             return None
-        looks, few, distances = [], [], []
+        looks, few, measures = [], [], []
         for image in images:
             middle = middle_of(image, self.patch_size_px)
             looks.append(look_of(middle))
             if len(looks) < FEWEST_IMAGES:
                 few.append(looks_of(image, self.patch_size_px))
             if self.colour_range_ is not None and image.ndim == 3:
-                distances += self.colour_range_.distances(colours_of(middle)[None]).tolist()
+                measures.append(self.colour_range_.measures([middle]))
         if not 0 < len(looks) < FEWEST_IMAGES:
             likeness = self.training_look_.compared(np.array(looks))
         else:
             likeness = self.training_look_.compared(np.concatenate(few), len(looks))
         if self.colour_range_ is None:
             return likeness
-        return self.colour_range_.compared(likeness, np.array(distances))
+        return self.colour_range_.compared(likeness, np.array(measures))
 
     def _votes_and_distances(
         self, X: Sequence[ByteImage] | AnyArray

@@ -1,6 +1,7 @@
 """What `classify` prints of a folder of labelled images."""
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -194,19 +195,12 @@ def print_likeness(likeness: "Likeness | None", noticed_share: float | None = No
 
 def print_unnamed(reasons: Sequence[str]) -> None:
     """Say how many images show no terrain, or no colours, by the reasons of all, if any does."""
-    from terrain.classification.colour_range import COLOURLESS
+    from terrain.classification.colour_range import colourless_note
     from terrain.classification.no_ground import no_ground_note
 
-    note = no_ground_note(reasons)
-    if note is not None:
-        click.echo(f"Note: {note}", err=True)
-    grey = sum(reason == COLOURLESS for reason in reasons)
-    if grey:
-        click.echo(
-            f"Note: {grey} of {len(reasons)} images are unknown, since they are grey in three "
-            "equal channels and the model was trained with colour",
-            err=True,
-        )
+    for note in (no_ground_note(reasons), colourless_note(Counter(reasons), len(reasons))):
+        if note is not None:
+            click.echo(f"Note: {note}", err=True)
 
 
 def readable(paths: Sequence[Path]) -> Iterator["ByteImage"]:

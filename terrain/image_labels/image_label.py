@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import DOUBTFUL, UNNOTICED, Classification
+from terrain.classification.answer import DOUBTFUL, GREYISH, UNNOTICED, Classification
 from terrain.classification.colour_range import COLOURLESS
 from terrain.classification.no_ground import DARK, OVEREXPOSED
 from terrain.classification.training_light import BY_LIGHT
@@ -60,7 +60,8 @@ class ImageLabel:
         ``unknown`` says that it resembles none with a name; not where a name is doubtful, the image
         white or black, or where the tread strips differ.
         """
-        of_nothing = (DOUBTFUL, UNNOTICED, BY_LIGHT, OVEREXPOSED, DARK, COLOURLESS)
+        doubted = (DOUBTFUL, GREYISH, UNNOTICED, BY_LIGHT)
+        of_nothing = (*doubted, OVEREXPOSED, DARK, COLOURLESS)
         says_nothing = self.is_astride or self.reason.startswith(of_nothing)
         return self.label != UNKNOWN or not says_nothing
 

@@ -14,7 +14,7 @@ from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classifier
-from terrain.classification.colour_range import ColourRange, colours_of
+from terrain.classification.colour_range import ONE_CHANNEL, ColourRange
 from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained_on import as_images
@@ -62,8 +62,7 @@ class RunLikeness:
             middles = [middle_of(view, self._classifier.patch_size_px) for view in views]
             look = np.mean([look_of(middle) for middle in middles], axis=0)
             if self._range is not None:
-                colours = np.mean([colours_of(of) for of in middles], axis=0)
-                self._of_colours.append(self._range.distances(colours[None])[0])
+                self._of_colours.append(self._range.measures(middles))
             self._looks.append(look)
             self._differences.append(self._training.differences(look[None])[0])
 
@@ -212,7 +211,7 @@ class ImageLabeller:
         if not self._is_of_size(image, name):
             return OTHER_SIZE
         if self.classifier.colour_ and image.ndim != 3:
-            return "the image is grey, the model was trained with colour"
+            return ONE_CHANNEL
         return image
 
     def _fault(self, image: ByteImage, pose: FloatArray) -> str:

@@ -1,5 +1,6 @@
 """The main job frame by frame, as on a robot."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.colour_range import COLOURLESS, ONE_CHANNEL, colourless_note
 from terrain.classification.likeness import Likeness
 from terrain.config import Config
 from terrain.image_labels.image_labeller import OTHER_SIZE
@@ -29,6 +31,8 @@ from terrain.terrain_names import name_notes
 
 if TYPE_CHECKING:
     from odometry.estimation.estimate import Estimate
+
+NOTED = {OTHER_SIZE, COLOURLESS, ONE_CHANNEL}
 
 
 class LiveOdometry:
@@ -126,7 +130,7 @@ class LiveOdometry:
         self._name_notes = name_notes(initial, classifier, parameters)
         self._gaps = GapsSoFar()
         self._lost_s, self._lost_until_s = 0.0, 0.0
-        self._of_other_size = 0
+        self._images, self._unnamed = 0, Counter[str]()
         self._image_size = (0, 0) if camera is None else camera.image_size
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
@@ -159,8 +163,9 @@ class LiveOdometry:
     def notes(self) -> tuple[str, ...]:
         """What to know before the answers are used; some can be said after several images only.
 
-        Terrains that the parameter set lacks, images unlike the training photographs or of another
-        size than the camera's, `feel_note`, and time without tread speeds.
+        Terrains that the parameter set lacks, images unlike the training photographs, of another
+        size than the camera's or grey before a model in colour, `feel_note`, and time without tread
+        speeds.
         """
         likeness = None if self.likeness is None else self.likeness.note
         lost = (
@@ -169,12 +174,13 @@ class LiveOdometry:
             "Where the robot went meanwhile is not known, and the odometer is off by it"
         )
         width, height = self._image_size
+        of_other_size = self._unnamed[OTHER_SIZE]
         odd = (
-            f"{self._of_other_size} image(s) are not of the camera's size, {width} x {height} "
+            f"{of_other_size} image(s) are not of the camera's size, {width} x {height} "
             "pixels, and have no label: see image_size of [camera]"
         )
-        of_images = odd if self._of_other_size else ""
-        said = likeness, of_images, self.feel_note, lost if self._lost_s else ""
+        of_images = odd if of_other_size else "", colourless_note(self._unnamed, self._images)
+        said = likeness, *of_images, self.feel_note, lost if self._lost_s else ""
         return tuple(filter(None, (*self._name_notes, *said)))
 
     def step(self, frame: Frame) -> LiveStep | None:
@@ -208,7 +214,9 @@ class LiveOdometry:
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:
             seen = self._watcher.image_labels[-1] if frame.image is not None else None
-            self._of_other_size += seen is not None and seen.reason == OTHER_SIZE
+            if seen is not None:
+                self._images += 1
+                self._unnamed.update({seen.reason} & NOTED)
             event = self._watcher.event
         if self._felt is None:
             return LiveStep(self._estimate, *odometer, terrain, seen, event)

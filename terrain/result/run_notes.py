@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
+from terrain.classification.colour_range import colourless_note
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.training_light import BY_LIGHT
@@ -79,8 +80,10 @@ def _images(watcher: TerrainWatcher) -> list[str]:
     empty = no_ground_note([image_label.reason for image_label in watcher.image_labels])
     if empty is not None:
         found.append(empty)
-    found += _blind(watcher.image_labels) or _few_names(watcher.image_labels)
-    return found
+    reasons = Counter(image_label.reason for image_label in watcher.image_labels)
+    grey = colourless_note(reasons, len(watcher.image_labels))
+    hardly_any = _blind(watcher.image_labels) or _few_names(watcher.image_labels)
+    return found + (hardly_any or ([] if grey is None else [grey]))
 
 
 def _refused(result: RunResult) -> list[str]:

@@ -128,7 +128,7 @@ def test_few_images_say_nothing(model):
 
 def test_a_small_difference_is_no_exchange():
     """Grey terrain is as near with both orders, by a factor that means nothing."""
-    near = np.tile([2.2 * EXCHANGED_LEAST / 3, 0.001], (FEWEST_IMAGES, 1))
+    near = np.tile([2.2 * EXCHANGED_LEAST / 3, 0.001, 0.0], (FEWEST_IMAGES, 1))
     of = ColourRange(np.zeros((1, 2)), 1.0)
     one = Likeness(FEWEST_IMAGES, 0.5, 0.5, ())
     assert not of.compared(one, near).exchanged

@@ -78,6 +78,6 @@ def test_grey_images_before_a_model_in_colour_are_counted(capsys):
     print_unnamed([COLOURLESS, "", COLOURLESS, SKY])
     said_of = capsys.readouterr().err
     assert "Note: 1 of 4 images show no terrain" in said_of
-    assert "Note: 2 of 4 images are unknown, since they are grey in three equal channels" in said_of
+    assert "Note: 2 of 4 images have no name, since they are grey" in said_of
     print_unnamed(["", ""])
     assert capsys.readouterr().err == ""

@@ -1,5 +1,6 @@
 """What a live run says beside its estimates."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -74,6 +75,24 @@ def test_what_is_no_image_has_no_label_and_ends_nothing(across_run, classifier):
     odd = [replace(f, image=f.image and np.zeros((4, 4, 2))) for f in list(run.frames())[:60]]
     labels = [s.image_label for s in map(live.step, odd) if s and s.image_label]
     assert "the image cannot be read" in {label.reason for label in labels}
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+def test_grey_images_before_a_model_in_colour_have_one_note(channels, across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    in_colour = copy(classifier)
+    in_colour.colour_ = True
+    live = LiveOdometry(run.robot, camera=camera, model=in_colour)
+    frames = [replace(f, image=f.image and read_image(f.image)) for f in list(run.frames())[:60]]
+    for frame in frames:
+        image = (
+            frame.image if channels == 1 or frame.image is None else np.dstack([frame.image] * 3)
+        )
+        live.step(replace(frame, image=image))
+    images = sum(frame.image is not None for frame in frames)
+    (note,) = [note for note in live.notes if "grey" in note]
+    assert note.startswith(f"{images} of {images} images have no name, since they are grey")
 
 
 def test_time_without_tread_speeds_is_noted():

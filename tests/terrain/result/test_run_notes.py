@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
+from terrain.classification.colour_range import COLOURLESS, ONE_CHANNEL
 from terrain.classification.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
@@ -87,6 +88,14 @@ def test_images_that_show_no_ground_are_counted():
         image_label.reason = SKY
     (hint,) = [one for one in run_notes(of) if "no terrain" in one]
     assert hint.startswith("2 of 3 images show no terrain and are unknown: smooth and blue")
+
+
+def test_grey_images_before_a_model_in_colour_are_counted():
+    of = starting(["grass", "unknown", ""])
+    of.watcher.image_labels[1].reason = COLOURLESS
+    of.watcher.image_labels[2].reason = ONE_CHANNEL
+    (hint,) = [one for one in run_notes(of) if "grey" in one]
+    assert hint.startswith("2 of 3 images have no name, since they are grey")
 
 
 def test_where_most_images_are_unknown_the_path_is_to_be_compared():
