@@ -1,6 +1,6 @@
 """The answer of a classifier for one image, and what gives it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
@@ -24,6 +24,8 @@ TOO_UNLIKE = "too far from the training photographs for any name"
 # Nearly grey runs so far beyond their limit had a wrong terrain in force as often as the right one
 # (652 and 789 frames), a nearer one seldom (103 and 623): made ones over ground/, development
 MOST_GREY = 1.15
+COLOURLESS = "the image is grey (its three channels are equal), the model was trained with colour"
+ONE_CHANNEL = "the image is grey, the model was trained with colour"
 GREYISH = "nearly grey, unlike the training photographs of a model in colour"
 # Of any image: three of four such names would be wrong.
 PROBABLE = 0.25
@@ -131,3 +133,14 @@ class Classifier(Protocol):
 
     def middle_used(self, shape: tuple[int, int]) -> tuple[int, int]:
         """Rows and columns in the middle of an image of such a shape: all that is looked at."""
+
+
+def colourless_note(reasons: Mapping[str, int], images: int) -> str | None:
+    """How many images are grey before a model in colour, by how many have each reason; or None."""
+    grey = reasons.get(COLOURLESS, 0) + reasons.get(ONE_CHANNEL, 0)
+    if not grey:
+        return None
+    return (
+        f"{grey} of {images} images have no name, since they are grey (one channel, or three equal "
+        "ones) and the model was trained with colour"
+    )

@@ -18,22 +18,9 @@ COLOUR_FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the li
 WHITE_SHARE = 0.01  # of white, added to each mean: black has no logarithm
 # Between the channels of a grey image that was stored in three; those of a camera vary by more.
 COLOURLESS_GREYS = 2
-COLOURLESS = "the image is grey (its three channels are equal), the model was trained with colour"
-ONE_CHANNEL = "the image is grey, the model was trained with colour"
 # Of 180 runs of photographs held out (ground/ and pavements/) one or two are so much nearer to
 # training with red and blue exchanged. A light that is bluer by a quarter is, too.
 EXCHANGED_RATIO, EXCHANGED_LEAST = 0.5, 0.05
-
-
-def colourless_note(reasons: Mapping[str, int], images: int) -> str | None:
-    """How many images are grey before a model in colour, by how many have each reason; or None."""
-    grey = reasons.get(COLOURLESS, 0) + reasons.get(ONE_CHANNEL, 0)
-    if not grey:
-        return None
-    return (
-        f"{grey} of {images} images have no name, since they are grey (one channel, or three equal "
-        "ones) and the model was trained with colour"
-    )
 
 
 def is_colourless(image: ByteImage) -> bool:

@@ -10,9 +10,9 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
-from terrain.classification.answer import Classification
+from terrain.classification.answer import COLOURLESS, Classification
 from terrain.classification.calibration import tempered
-from terrain.classification.colour_range import COLOURLESS, is_colourless
+from terrain.classification.colour_range import is_colourless
 from terrain.classification.feature_jobs import features_of
 from terrain.classification.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.look import look_of, looks_of, middle_of

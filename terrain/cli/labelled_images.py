@@ -195,7 +195,7 @@ def print_likeness(likeness: "Likeness | None", noticed_share: float | None = No
 
 def print_unnamed(reasons: Sequence[str]) -> None:
     """Say how many images show no terrain, or no colours, by the reasons of all, if any does."""
-    from terrain.classification.colour_range import colourless_note
+    from terrain.classification.answer import colourless_note
     from terrain.classification.no_ground import no_ground_note
 
     for note in (no_ground_note(reasons), colourless_note(Counter(reasons), len(reasons))):

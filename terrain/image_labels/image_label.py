@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import DOUBTFUL, GREYISH, UNNOTICED, Classification
-from terrain.classification.colour_range import COLOURLESS
+from terrain.classification.answer import COLOURLESS, DOUBTFUL, GREYISH, UNNOTICED, Classification
 from terrain.classification.no_ground import DARK, OVEREXPOSED
 from terrain.classification.training_light import BY_LIGHT
 from terrain.region.region import Region

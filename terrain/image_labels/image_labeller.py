@@ -13,8 +13,7 @@ from odometry.estimation.estimate import Estimate
 from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
-from terrain.classification.answer import Classifier
-from terrain.classification.colour_range import ONE_CHANNEL, ColourRange
+from terrain.classification.answer import ONE_CHANNEL, Classifier
 from terrain.classification.likeness import Likeness
 from terrain.classification.look import look_of, middle_of
 from terrain.classification.trained_on import as_images
@@ -28,6 +27,7 @@ from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_reg
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
 if TYPE_CHECKING:
+    from terrain.classification.colour_range import ColourRange
     from terrain.classification.training_look import TrainingLook
 
 KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one light

@@ -16,8 +16,8 @@ from odometry.run import UNKNOWN, Robot
 from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera.camera import Camera
+from terrain.classification.answer import COLOURLESS, ONE_CHANNEL, colourless_note
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.colour_range import COLOURLESS, ONE_CHANNEL, colourless_note
 from terrain.classification.likeness import Likeness
 from terrain.config import Config
 from terrain.image_labels.image_labeller import OTHER_SIZE

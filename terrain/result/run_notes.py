@@ -6,8 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE
-from terrain.classification.colour_range import colourless_note
+from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, colourless_note
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.training_light import BY_LIGHT

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.run import UNKNOWN
+from terrain.classification.answer import COLOURLESS
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.colour_range import (
-    COLOURLESS,
     EXCHANGED_LEAST,
     ColourRange,
     colours_of,

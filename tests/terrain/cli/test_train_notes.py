@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import cv2
 import numpy as np
 
-from terrain.classification.colour_range import COLOURLESS
+from terrain.classification.answer import COLOURLESS
 from terrain.classification.no_ground import SKY
 from terrain.classification.patches import find_photos, load_patches
 from terrain.cli.labelled_images import print_unnamed

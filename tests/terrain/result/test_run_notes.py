@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
-from terrain.classification.colour_range import COLOURLESS, ONE_CHANNEL
+from terrain.classification.answer import COLOURLESS, ONE_CHANNEL
 from terrain.classification.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
