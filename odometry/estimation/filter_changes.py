@@ -128,8 +128,8 @@ def bias_followed(
 
 
 def _with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
-    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen, stuck = watch
-    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen, stuck)
+    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen, slip, stuck = watch
+    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen, slip, stuck)
 
 
 def _another_bias(

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.errors import EstimationError
-from odometry.estimation import sensor_watch
+from odometry.estimation import sensor_watch, slip_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction, added_from, require_corrections
 from odometry.estimation.estimate import Estimate
@@ -174,6 +174,9 @@ class IcrEkf:
         if predicted.watch is not None:
             after, predicted = self._stuck.followed(estimate, predicted, frame, terrain, after)
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
+        if watch is not None and predicted.pose is not None and crossing is None:
+            slip = slip_watch.watched(watch.slip, belief, frame.stamp_s, terrain)
+            watch = watch if slip is watch.slip else watch._replace(slip=slip)
         covariance, doubt = belief[1], None
         if self.config.watch_sensors and (after.others or after.refused):
             pose_covariance, refused = self._pose_update.covariance, after.refused

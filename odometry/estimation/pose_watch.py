@@ -37,6 +37,16 @@ class PoseWatch(NamedTuple):
     turn_rad: float = 0.0
 
 
+def moved(speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> tuple[float, float]:
+    """Travel of the wheels [m] and turn [rad] over a step; what is not known counts as none."""
+    left, right = speeds_m_s.tolist()
+    travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
+    return (
+        0.0 if math.isnan(travel_m) else travel_m,
+        0.0 if math.isnan(turn_rad) else turn_rad,
+    )
+
+
 def watched(
     watch: PoseWatch, pose: FloatArray | None, stamp_s: float, travel_m: float, turn_rad: float
 ) -> tuple[PoseWatch, FloatArray | None, tuple[FilterEvent, ...]]:

@@ -54,6 +54,7 @@ class ProcessNoise:
         by_gyroscope: bool,
         in_gap: bool,
         bias_walk: float = 1.0,
+        alpha_walk: float = 1.0,
     ) -> FloatArray:
         """Covariance (9, 9) that half of a step adds: L Q L^T of Chen 2023 eq. 7 and 11.
 
@@ -66,8 +67,8 @@ class ProcessNoise:
             Factor on the variance of slip.
         by_gyroscope, in_gap : bool
             Whether the gyroscope turns the robot, and whether the tread speeds are not known.
-        bias_walk : float
-            Factor on the noise of the random walk of the gyroscope's bias.
+        bias_walk, alpha_walk : float
+            Factors on the noise of the random walk of the gyroscope's bias and of slip factors.
         """
         left, right = tread_speeds.tolist()
         travel_per_s = (abs(left) + abs(right)) / 2 * slip_scale
@@ -82,6 +83,8 @@ class ProcessNoise:
         covariance[YAW, YAW] = yaw * half_s
         if bias_walk != 1.0:
             covariance[GYRO_BIAS, GYRO_BIAS] *= bias_walk**2
+        if alpha_walk != 1.0:
+            covariance[ALPHAS, ALPHAS] *= alpha_walk**2
         return covariance
 
 
@@ -180,6 +183,7 @@ class Prediction:
             by_gyroscope=by_gyroscope,
             in_gap=frame.in_gap or (estimate.watch is not None and estimate.watch.is_frozen),
             bias_walk=1.0 if estimate.watch is None else estimate.watch.bias.walk,
+            alpha_walk=_alpha_walk(estimate),
         )
         covariance = predicted(estimate.covariance, jacobian, half_noise)
         if not by_gyroscope or step_s == 0 or frame.in_gap:
@@ -221,6 +225,11 @@ class Prediction:
             *updated_by_number((mean, covariance), shared, residual, expected + variance),
             self._track_width,
         )
+
+
+def _alpha_walk(estimate: Estimate) -> float:
+    watch = None if estimate.watch is None else estimate.watch.slip
+    return 1.0 if watch is None else watch.walk(estimate.stamp_s)
 
 
 def _of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> float:

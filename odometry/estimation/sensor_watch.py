@@ -21,6 +21,7 @@ from odometry.estimation.gyroscope_watch import GyroscopeWatch
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.pose_watch import PoseWatch
 from odometry.estimation.rest_watch import RestWatch
+from odometry.estimation.slip_watch import SlipWatch
 from odometry.estimation.stuck_watch import StuckWatch
 from odometry.estimation.tread_watch import TreadWatch
 from odometry.frames import Frame
@@ -46,6 +47,8 @@ class SensorWatch(NamedTuple):
         Of the poses while the treads stand.
     frozen : FrozenTreads or None
         While the gyroscope says that the robot does not turn as the treads do.
+    slip : SlipWatch or None
+        Of the slip factors; None before the first pose.
     stuck : StuckWatch or None
         Of the poses while the treads drive.
     """
@@ -58,6 +61,7 @@ class SensorWatch(NamedTuple):
     bias: BiasWatch = BiasWatch()
     rest: RestWatch | None = None
     frozen: FrozenTreads | None = None
+    slip: SlipWatch | None = None
     stuck: StuckWatch | None = None
 
     @property
@@ -159,25 +163,15 @@ def sensed(
         )
         if watch.hold is not None:
             events += gyroscope_hold.ended(watch.hold, begin_s)
-    travel_m, turn_rad = _moved(speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
+    travel_m, turn_rad = pose_watch.moved(speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
     poses, pose, of_poses = pose_watch.watched(
         watch.poses, frame.pose, frame.stamp_s, travel_m, turn_rad
     )
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    kept = watch.bias, watch.rest, watch.frozen, watch.stuck
+    kept = watch.bias, watch.rest, watch.frozen, watch.slip, watch.stuck
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *kept)
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
-
-
-def _moved(speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> tuple[float, float]:
-    """Travel of the wheels [m] and turn [rad] over a step; what is not known counts as none."""
-    left, right = speeds_m_s.tolist()
-    travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
-    return (
-        0.0 if math.isnan(travel_m) else travel_m,
-        0.0 if math.isnan(turn_rad) else turn_rad,
-    )
 
 
 def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:

@@ -1,12 +1,13 @@
-"""What a robot that is stuck, and poses that are held, do to the filter on real recordings.
+"""What robots that are stuck or slip, and poses that are held, do to the filter on recordings.
 
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.estimation_stuck [--seven] [--draw 0]
 
 Each recording gets, at moments drawn at random from its middle half, a robot that is stuck twice (3
 to 12 s are inserted: treads go on with noise, poses and gyroscope stay with theirs) and poses that
-are held once (up to 6 s: the pose of the first moment with another noise). A row shows what was
-noticed; how many of its deviations a slip factor is off a second after the end, against the same
-recording untouched; and how much larger the deviation of the position is in the half minute after.
+are held once (up to 6 s: the pose of the first moment with another noise); a tread that spins (1.8
+times as fast) and treads that slip (2.2 times) for so long. A row shows what was noticed; how many
+of its deviations a slip factor is off 1 and 10 s after the end, against the same recording
+untouched; and how much larger the deviation of the position is in the half minute after.
 """
 
 import argparse
@@ -27,6 +28,7 @@ SHORTEST_S, LONGEST_S, LONGEST_HELD_S = 3.0, 12.0, 6.0
 MOVES_M_S = 0.3
 NOISES = {"x": 0.01, "y": 0.01, "yaw": 0.005, "gyro_z": 0.01}
 SLIP_FACTORS = ("alpha_left", "alpha_right")
+TREADS = ("v_left", "v_right")
 
 
 def main():
@@ -42,7 +44,7 @@ def main():
             continue
         rng = np.random.default_rng([arguments.draw, zlib.crc32(folder.name.encode())])
         plain = outputs_of(run).tables["estimate"]
-        for change in (stuck, stuck, held):
+        for change in (stuck, stuck, held, spinning, slipping):
             begin_s = float(rng.choice(moments))
             lasts_s = float(rng.uniform(SHORTEST_S, LONGEST_S))
             changed, added_s = change(run, begin_s, lasts_s, rng)
@@ -80,7 +82,7 @@ def _lengthened(table, begin_s, lasts_s, rng):
     inside = slice(at, at + count)
     columns["t"][inside] += period_s * (1 + np.arange(count))
     columns["t"][at + count :] += period_s * count
-    for name in ("v_left", "v_right"):
+    for name in TREADS:
         if name in columns:
             columns[name][inside] *= rng.normal(1, 0.03, count)
     for name, sigma in NOISES.items():
@@ -103,21 +105,42 @@ def held(run, begin_s, lasts_s, rng):
     return replace(run, pose=with_columns(run.pose, **columns)), 0.0
 
 
+def spinning(run, begin_s, lasts_s, rng):
+    """The run with one tread that turns faster than the robot goes."""
+    return _faster(run, begin_s, lasts_s, {str(rng.choice(TREADS)): 1.8}), 0.0
+
+
+def slipping(run, begin_s, lasts_s, rng):  # noqa: ARG001 - of the face of changes
+    """The run with both."""
+    return _faster(run, begin_s, lasts_s, dict.fromkeys(TREADS, 2.2)), 0.0
+
+
+def _faster(run, begin_s, lasts_s, times):
+    stamps_s = run.odometry.stamps_s
+    inside = (stamps_s >= begin_s) & (stamps_s < begin_s + lasts_s)
+    columns = {
+        name: np.where(inside, factor, 1.0) * run.odometry[name] for name, factor in times.items()
+    }
+    return replace(run, odometry=with_columns(run.odometry, **columns))
+
+
 def figures(plain, found, begin_s, lasts_s, added_s):
     """What was noticed, how far slip factors are off in their deviations, how unsure places are."""
     after, end_s = found.tables["estimate"], begin_s + lasts_s
-    ends = min(end_s + 1, after["t"][-1])
     off = [
-        abs(_at(after, ends, name) - _at(plain, ends - added_s, name))
-        / _at(after, ends, f"sigma_{name}")
-        for name in SLIP_FACTORS
+        max(
+            abs(_at(after, at_s, name) - _at(plain, at_s - added_s, name))
+            / _at(after, at_s, f"sigma_{name}")
+            for name in SLIP_FACTORS
+        )
+        for at_s in (min(end_s + later_s, after["t"][-1]) for later_s in (1, 10))
     ]
     then = (after["t"] > end_s + 2) & (after["t"] < end_s + 30)
     wider = np.median(
         _sigma_m(after, after["t"][then]) / _sigma_m(plain, after["t"][then] - added_s)
     )
     noticed = Counter(event["kind"] for event in found.events)
-    return f"{max(off):.2f}", f"{wider:.2f}", dict(sorted(noticed.items()))
+    return *(f"{each:.2f}" for each in (*off, wider)), dict(sorted(noticed.items()))
 
 
 def _at(table, stamps_s, name):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.sensor_watch import _moved
+from odometry.estimation.pose_watch import moved
 from odometry.estimation.tread_watch import parted
 
 
@@ -27,4 +27,4 @@ def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng)
     ],
 )
 def test_wheel_travel_of_a_step_is_the_mean_of_both_treads(speeds, yaw_rate, expected):
-    assert _moved(np.array(speeds), yaw_rate, 0.1) == pytest.approx(expected)
+    assert moved(np.array(speeds), yaw_rate, 0.1) == pytest.approx(expected)
