@@ -10,7 +10,7 @@ from odometry.estimation import stuck_watch
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_start import started_anew
 from odometry.estimation.measured_updates import Seen
-from odometry.estimation.measurement import Gaussian, Place, turned_by_treads
+from odometry.estimation.measurement import Gaussian, Place
 from odometry.estimation.other_places import SHIFTED_POSES
 from odometry.estimation.prediction import Predicted
 from odometry.estimation.rest_watch import STILL_M_S
@@ -54,7 +54,7 @@ class StuckUpdate:
         """
         assert predicted.watch is not None  # noqa: S101 - for the type checker: it has no other
         watch, pose = predicted.watch.stuck, predicted.pose
-        if pose is None and not frame.in_gap and (watch is None or not watch.is_found):
+        if not frame.in_gap and _is_early(watch, pose, frame.stamp_s):
             return after, predicted
         cells = None if pose is None else _cells(pose)
         if watch is not None and cells is not None and stuck_watch.moves(watch, cells):
@@ -62,7 +62,9 @@ class StuckUpdate:
         if watch is not None and _is_over(watch, estimate, frame, terrain, after):
             watch = None
         if watch is not None:
-            watch = _led_on(watch, estimate, predicted, frame.stamp_s)
+            left, right = (estimate.tread_speeds_m_s + estimate.added_speeds_m_s).tolist()
+            yaw_rate = predicted.yaw_rate_rad_s
+            watch = stuck_watch.led_on(watch, (left, right), yaw_rate, frame.stamp_s)
         before = watch
         if watch is not None and cells is not None:
             watch = stuck_watch.with_pose(watch, cells, frame.stamp_s)
@@ -70,9 +72,7 @@ class StuckUpdate:
             after = self._held(estimate, watch, pose, after)
         elif before is not None and before.is_found and pose is not None:
             after = self._freed(before, frame, pose, after)
-        if watch is not None:
-            watch = watch._replace(at=_cells(after.mean[:3]), at_s=frame.stamp_s)
-        elif cells is not None and after.course is None:
+        if watch is None and cells is not None and after.course is None:
             scaled = self.pose_covariance * after.scale.pose
             belief = after.mean, after.covariance
             watch = stuck_watch.begun(
@@ -120,6 +120,13 @@ class StuckUpdate:
         )
 
 
+def _is_early(watch: StuckWatch | None, pose: FloatArray | None, stamp_s: float) -> bool:
+    """Whether nothing is to be looked at yet, of a robot that is not stuck."""
+    if watch is None:
+        return pose is None
+    return not watch.is_found and (pose is None or stamp_s - watch.at_s < stuck_watch.EVERY_S)
+
+
 def _is_over(
     watch: StuckWatch, estimate: Estimate, frame: Frame, terrain: str, after: Seen
 ) -> bool:
@@ -131,18 +138,6 @@ def _is_over(
         return True
     stand = -STILL_M_S <= left <= STILL_M_S and -STILL_M_S <= right <= STILL_M_S
     return stand and not watch.is_found
-
-
-def _led_on(
-    watch: StuckWatch, estimate: Estimate, predicted: Predicted, stamp_s: float
-) -> StuckWatch:
-    return stuck_watch.led_on(
-        watch,
-        predicted.belief[0],
-        stamp_s,
-        turned_by_treads(estimate.mean, *estimate.tread_speeds_m_s.tolist()),
-        by_gyroscope=not math.isnan(predicted.yaw_rate_rad_s),
-    )
 
 
 def _cells(pose: FloatArray) -> stuck_watch.Pose:

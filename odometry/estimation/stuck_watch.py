@@ -21,6 +21,7 @@ from odometry.geometry.angles import wrap_one
 NEAR_M, NEAR_RAD, SIGMAS = 0.1, 0.1, 4.0  # poses within the larger of these and of SIGMAS stay
 TIMES = 4.0  # as far must treads have led
 LEAST_S, LEAST_POSES = 0.8, 3  # that stay, once treads have led away: poses may be late
+EVERY_S = 0.2  # a pose is looked at, until the robot is stuck
 IN_A_ROW = 3  # poses elsewhere, before the robot is free
 STUCK, HELD_POSES = "stuck", "held_poses"  # kinds of events, whose value is how far treads drove
 JUMP_TIMES = 2.0  # the way of the treads meanwhile: farther from there poses jump
@@ -46,8 +47,10 @@ class StuckWatch(NamedTuple):
         State estimate then.
     scale : NoiseScale
         Estimated then.
-    at, at_s : (x, y, yaw), float
-        Pose of the estimate up to which treads and gyroscope are followed, and its stamp.
+    parameters : (y_left, y_right, x_icr, bias, alpha_left, alpha_right)
+        Of the state estimate then.
+    at_s : float
+        Stamp up to which treads and gyroscope are followed.
     led, led_last : (x, y, yaw)
         Pose to which they have led since, and that when the last pose was there.
     led_m, treads_rad, gyroscope_rad : float
@@ -67,7 +70,7 @@ class StuckWatch(NamedTuple):
     near_rad: float
     before: Gaussian
     scale: NoiseScale
-    at: Pose
+    parameters: tuple[float, ...]
     at_s: float
     led: Pose
     led_last: Pose
@@ -94,15 +97,13 @@ def begun(
         return None
     near_m = max(NEAR_M, SIGMAS * math.sqrt(pose_covariance[0, 0]))
     near_rad = max(NEAR_RAD, SIGMAS * math.sqrt(pose_covariance[2, 2]))
-    at = _pose_of(belief[0])
+    x, y, yaw, *parameters = belief[0].tolist()
+    led = x, y, yaw
     return StuckWatch(
-        stamp_s, pose, terrain, near_m, near_rad, belief, scale, at, stamp_s, led=at, led_last=at
+        *(stamp_s, pose, terrain, near_m, near_rad, belief, scale, tuple(parameters), stamp_s),
+        led=led,
+        led_last=led,
     )
-
-
-def _pose_of(mean: FloatArray) -> Pose:
-    x, y, yaw = mean[:3].tolist()
-    return x, y, yaw
 
 
 def moves(watch: StuckWatch, pose: Pose) -> bool:
@@ -111,27 +112,32 @@ def moves(watch: StuckWatch, pose: Pose) -> bool:
 
 
 def led_on(
-    watch: StuckWatch, mean: FloatArray, stamp_s: float, treads_rad_s: float, *, by_gyroscope: bool
+    watch: StuckWatch, speeds_m_s: tuple[float, float], yaw_rate_rad_s: float, stamp_s: float
 ) -> StuckWatch:
-    """The watch when the filter predicts a mean (9,), before any pose is measured there.
+    """The watch at a stamp, after tread speeds and a yaw rate of the gyroscope, or NaN.
 
-    `treads_rad_s` is the yaw rate of the treads; `by_gyroscope`: whether that turned the robot.
+    Both are taken as those of all the time since `at_s`, and its way as a chord.
     """
-    (x, y, yaw), (at_x, at_y, at_yaw) = mean[:3].tolist(), watch.at
-    turn_rad = wrap_one(yaw - at_yaw)
-    led_x, led_y, led_yaw = watch.led
-    cosine, sine = math.cos(led_yaw - at_yaw), math.sin(led_yaw - at_yaw)
-    along, aside = x - at_x, y - at_y
-    led_x += cosine * along - sine * aside
-    led_y += sine * along + cosine * aside
+    y_left, y_right, x_icr, bias, alpha_left, alpha_right = watch.parameters
+    lasts_s = stamp_s - watch.at_s
+    left, right = alpha_left * speeds_m_s[0], alpha_right * speeds_m_s[1]
+    by_treads = omega = (right - left) / (y_left - y_right)
     turned_rad = watch.gyroscope_rad
-    if by_gyroscope:
-        turned_rad = turn_rad + (0.0 if math.isnan(turned_rad) else turned_rad)
+    if not math.isnan(yaw_rate_rad_s):
+        omega = yaw_rate_rad_s - bias
+        turned_rad = omega * lasts_s + (0.0 if math.isnan(turned_rad) else turned_rad)
+    along = ((left + right) / 2 + (y_left + y_right) / 2 * omega) * lasts_s
+    aside = -x_icr * omega * lasts_s
+    x, y, yaw = watch.led
+    cosine, sine = math.cos(yaw + omega * lasts_s / 2), math.sin(yaw + omega * lasts_s / 2)
+    x += cosine * along - sine * aside
+    y += sine * along + cosine * aside
     begin_x, begin_y, _ = watch.before[0][:3].tolist()
     return watch._replace(
-        led=(led_x, led_y, led_yaw + turn_rad),
-        led_m=math.hypot(led_x - begin_x, led_y - begin_y),
-        treads_rad=watch.treads_rad + treads_rad_s * (stamp_s - watch.at_s),
+        at_s=stamp_s,
+        led=(x, y, yaw + omega * lasts_s),
+        led_m=math.hypot(x - begin_x, y - begin_y),
+        treads_rad=watch.treads_rad + by_treads * lasts_s,
         gyroscope_rad=turned_rad,
     )
 
