@@ -104,7 +104,8 @@ def bias_followed(
     belief, watch = (after.mean, after.covariance), predicted.watch
     if watch is None:
         return belief, watch, ()
-    if after.course is not None or after.events or watch.is_gyroscope_held:
+    begins_anew = after.course is not None or bool(after.events)
+    if begins_anew or watch.is_gyroscope_held or watch.is_stuck:
         return belief, _with_bias(watch, BiasWatch(walk=watch.bias.walk)), ()
     step_s = stamp_s - estimate.stamp_s
     is_silent = not watch.bias.lasts_s and math.isnan(predicted.yaw_rate_rad_s)

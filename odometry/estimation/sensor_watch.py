@@ -75,6 +75,11 @@ class SensorWatch(NamedTuple):
         return self.frozen is not None and self.frozen.is_found
 
     @property
+    def is_stuck(self) -> bool:
+        """Whether poses stay while the treads drive."""
+        return self.stuck is not None and self.stuck.is_found
+
+    @property
     def is_gyroscope_held(self) -> bool:
         """Whether the gyroscope repeats one value and counts as silent."""
         return self.hold is not None and self.hold.is_found

@@ -57,8 +57,6 @@ class StuckUpdate:
         if not frame.in_gap and _is_early(watch, pose, frame.stamp_s):
             return after, predicted
         cells = None if pose is None else _cells(pose)
-        if watch is not None and cells is not None and stuck_watch.moves(watch, cells):
-            watch = None
         if watch is not None and _is_over(watch, estimate, frame, terrain, after):
             watch = None
         if watch is not None:
@@ -83,32 +81,30 @@ class StuckUpdate:
     def _held(
         self, estimate: Estimate, watch: StuckWatch, pose: FloatArray | None, after: Seen
     ) -> Seen:
-        """The pose measured there, or the one before, beside all else as it was."""
-        belief = _with_pose_of(watch.before, estimate.mean, estimate.covariance)
-        if pose is not None and not watch.away:
-            scaled = self.pose_covariance * watch.scale.pose
-            belief = started_anew(belief, pose, scaled, self.lever_m, lost_yaw_rad=0.0)
+        """At the pose measured there, or at the one before."""
+        there = None if watch.away else pose
+        held = self._as_before(watch, (estimate.mean, estimate.covariance), there, after)
         near = next((each.near for each in after.others if each.since_s == watch.since_s), 0)
-        others = tuple(each for each in after.others if each.since_s < watch.since_s)
-        led = stuck_watch.where_treads_led(watch, belief[0], near)
-        return after._replace(
-            mean=belief[0],
-            covariance=belief[1],
-            refused=(),
-            recent=(),
-            scale=watch.scale,
-            others=(*others, led),
-        )
+        led = stuck_watch.where_treads_led(watch, held.mean, near)
+        return held._replace(others=(*held.others, led))
 
     def _freed(self, watch: StuckWatch, frame: Frame, pose: FloatArray, after: Seen) -> Seen:
         """Where the robot was stuck and a pose is elsewhere: it is there, and nowhere else."""
         if stuck_watch.is_there(watch, _cells(pose)):
             return after
         events = (*after.events, *stuck_watch.freed(watch, _cells(pose), frame.stamp_s))
+        freed = self._as_before(watch, (after.mean, after.covariance), pose, after)
+        return freed._replace(events=events)
+
+    def _as_before(
+        self, watch: StuckWatch, belief: Gaussian, pose: FloatArray | None, after: Seen
+    ) -> Seen:
+        """At a measured pose (3,), or that of a belief, and all else as before it was stuck."""
+        belief = _with_pose_of(watch.before, *belief)
+        if pose is not None:
+            scaled = self.pose_covariance * watch.scale.pose
+            belief = started_anew(belief, pose, scaled, self.lever_m, lost_yaw_rad=0.0)
         others = tuple(each for each in after.others if each.since_s < watch.since_s)
-        belief = _with_pose_of(watch.before, after.mean, after.covariance)
-        scaled = self.pose_covariance * watch.scale.pose
-        belief = started_anew(belief, pose, scaled, self.lever_m, lost_yaw_rad=0.0)
         return after._replace(
             mean=belief[0],
             covariance=belief[1],
@@ -116,7 +112,6 @@ class StuckUpdate:
             recent=(),
             scale=watch.scale,
             others=others,
-            events=events,
         )
 
 

@@ -17,15 +17,14 @@ from odometry.estimation.other_places import OtherPlace
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap_one
+from odometry.windows.stuck import LEAST_S, NEAR_M, NEAR_RAD, TIMES
 
-NEAR_M, NEAR_RAD, SIGMAS = 0.1, 0.1, 4.0  # poses within the larger of these and of SIGMAS stay
-TIMES = 4.0  # as far must treads have led
-LEAST_S, LEAST_POSES = 0.8, 3  # that stay, once treads have led away: poses may be late
+SIGMAS = 4.0  # poses within these, or the distances by which windows leave poses out, stay
+LEAST_POSES = 3  # that stay, once treads have led away
 EVERY_S = 0.2  # a pose is looked at, until the robot is stuck
 IN_A_ROW = 3  # poses elsewhere, before the robot is free
-STUCK, HELD_POSES = "stuck", "held_poses"  # kinds of events, whose value is how far treads drove
+STUCK, HELD_POSES = "stuck", "held_poses"  # kinds of events, whose value is how far treads led
 JUMP_TIMES = 2.0  # the way of the treads meanwhile: farther from there poses jump
-
 
 Pose = tuple[float, float, float]  # x, y [m], yaw [rad], which may be NaN
 
@@ -106,11 +105,6 @@ def begun(
     )
 
 
-def moves(watch: StuckWatch, pose: Pose) -> bool:
-    """Whether a pose is elsewhere, of a robot that was not stuck."""
-    return not watch.is_found and not math.isnan(pose[0] + pose[1]) and not is_there(watch, pose)
-
-
 def led_on(
     watch: StuckWatch, speeds_m_s: tuple[float, float], yaw_rate_rad_s: float, stamp_s: float
 ) -> StuckWatch:
@@ -143,11 +137,12 @@ def led_on(
 
 
 def with_pose(watch: StuckWatch, pose: Pose, stamp_s: float) -> StuckWatch | None:
-    """The watch after a measured pose; None once the robot is free, or turns there."""
+    """The watch after a measured pose; None once the robot is elsewhere, or turns there."""
     if math.isnan(pose[0] + pose[1]):
         return watch
     if not is_there(watch, pose):
-        return watch._replace(away=watch.away + 1) if watch.away + 1 < IN_A_ROW else None
+        away = watch.away + 1
+        return watch._replace(away=away) if watch.is_found and away < IN_A_ROW else None
     if _is_turned(watch, pose, stamp_s):
         return None
     led_times = _led_times(watch)
@@ -226,6 +221,6 @@ def ended(watch: StuckWatch | None, stamp_s: float) -> tuple[FilterEvent, ...]:
 def _stayed(watch: StuckWatch, stamp_s: float) -> str:
     return (
         f"the poses stayed within {watch.near_m:.2f} m for {stamp_s - watch.since_s:.1f} s while "
-        f"treads drove {watch.led_m:.2f} m and turned by "
+        f"treads would have moved the robot by {watch.led_m:.2f} m and turned it by "
         f"{math.degrees(abs(watch.treads_rad)):.0f} degrees"
     )
