@@ -5,8 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.rest_watch import SETTLED_S, STILL_M_S
 from odometry.estimation.transition import GYRO_BIAS, YAW
+from odometry.estimation.watches.rest_watch import SETTLED_S, STILL_M_S
 from odometry.geometry.angles import wrap
 
 BIAS_RAD_S, BIAS_SIGMAS = 0.005, 4.0  # 0.3 degrees per second

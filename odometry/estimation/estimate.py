@@ -12,8 +12,8 @@ from odometry.estimation.course import Course
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.other_places import Doubt
-from odometry.estimation.sensor_watch import SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
+from odometry.estimation.watches.sensor_watch import SensorWatch
 from odometry.models.icr import icr_twist
 
 STATE_NAMES = (

@@ -6,17 +6,17 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimation import bias_watch, rest_watch
-from odometry.estimation.bias_watch import SPANS, BiasWatch, Rates
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_start import started_anew
 from odometry.estimation.measured_updates import Seen
 from odometry.estimation.measurement import Gaussian, Place, turned_by_treads
 from odometry.estimation.other_places import SHIFTED_POSES, left
 from odometry.estimation.prediction import Predicted
-from odometry.estimation.rest_watch import RestWatch
-from odometry.estimation.sensor_watch import Events, SensorWatch
 from odometry.estimation.transition import GYRO_BIAS, YAW
+from odometry.estimation.watches import bias_watch, rest_watch
+from odometry.estimation.watches.bias_watch import SPANS, BiasWatch, Rates
+from odometry.estimation.watches.rest_watch import RestWatch
+from odometry.estimation.watches.sensor_watch import Events, SensorWatch
 from odometry.geometry.angles import wrap_one
 
 

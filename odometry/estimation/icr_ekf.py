@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.errors import EstimationError
-from odometry.estimation import sensor_watch, slip_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.corrections import Correction, added_from, require_corrections
 from odometry.estimation.estimate import Estimate
@@ -17,9 +16,10 @@ from odometry.estimation.measured_updates import PoseUpdate, VelocityUpdate
 from odometry.estimation.measurement import Place
 from odometry.estimation.other_places import AGREEING, doubted
 from odometry.estimation.prediction import Prediction
-from odometry.estimation.rest_watch import stand
 from odometry.estimation.stuck_update import StuckUpdate
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
+from odometry.estimation.watches import sensor_watch, slip_watch
+from odometry.estimation.watches.rest_watch import stand
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet
 from odometry.run_terrains import Footing

@@ -7,15 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimation import sensor_watch, tread_watch
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
-from odometry.estimation.frozen_treads import restored
 from odometry.estimation.kalman import bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
 from odometry.estimation.noise_scale import huber_factor, tread_variance
-from odometry.estimation.sensor_watch import Events, SensorWatch
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
+from odometry.estimation.watches import sensor_watch, tread_watch
+from odometry.estimation.watches.frozen_treads import restored
+from odometry.estimation.watches.sensor_watch import Events, SensorWatch
 from odometry.frames import Frame
 
 GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimation import stuck_watch
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_start import started_anew
 from odometry.estimation.measured_updates import Seen
 from odometry.estimation.measurement import Gaussian, Place
 from odometry.estimation.other_places import SHIFTED_POSES
 from odometry.estimation.prediction import Predicted
-from odometry.estimation.rest_watch import STILL_M_S
-from odometry.estimation.sensor_watch import SensorWatch
-from odometry.estimation.stuck_watch import StuckWatch
+from odometry.estimation.watches import stuck_watch
+from odometry.estimation.watches.rest_watch import STILL_M_S
+from odometry.estimation.watches.sensor_watch import SensorWatch
+from odometry.estimation.watches.stuck_watch import StuckWatch
 from odometry.frames import Frame
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ParameterError
-from odometry.estimation.markov import ModeChain
+from odometry.estimation.imm.markov import ModeChain
 from odometry.io.csv_table import read_csv_table
 from odometry.run import UNKNOWN, Run
 

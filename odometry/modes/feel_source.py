@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import floored, log_sum
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import floored, log_sum
 from odometry.feel.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.feel.windows import STEPS

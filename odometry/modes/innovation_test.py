@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.estimation.markov import ModeChain
+from odometry.estimation.imm.markov import ModeChain
 
 WINDOW_S = 0.5  # of the rolling test
 SPREAD = 4.0  # standard deviation of a window's sum where no mode fits; 1 where one does

@@ -5,9 +5,9 @@ from functools import lru_cache
 from typing import NamedTuple, Self
 
 from odometry.arrays import FloatArray
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Imm
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.ekf_bank import EkfBank
+from odometry.estimation.imm.estimator import Imm
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.gyroscope_bias import BiasReading, with_reading
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.tempered_bank import (

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.estimation.ekf_bank import EkfBank, wrapped
-from odometry.estimation.imm import Bank
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.ekf_bank import EkfBank, wrapped
+from odometry.estimation.imm.estimator import Bank
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.faster import faster_than
 from odometry.modes.gyroscope_bias import moving

@@ -7,7 +7,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import FloatArray
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenTerrain, mode_chains
 from odometry.modes.gyroscope_bias import bias_is_open, bias_readings, gyroscope_trust

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.estimation.ekf_bank import EkfModel
+from odometry.estimation.imm.ekf_bank import EkfModel
 from odometry.geometry import se2
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals, pose_signals
 from odometry.modes.faster import with_faster_spans

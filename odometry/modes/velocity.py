@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
-from odometry.estimation.ekf_bank import EkfModel
+from odometry.estimation.imm.ekf_bank import EkfModel
 from odometry.modes.bank_inputs import (
     BIAS_SIGMA_RAD_S,
     BIAS_WALK_RAD2_S3,

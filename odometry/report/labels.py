@@ -9,7 +9,7 @@ from matplotlib.patheffects import withStroke
 from scipy.optimize import isotonic_regression
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.estimation.pose_watch import OUTAGE_PERIODS, OUTAGE_S
+from odometry.estimation.watches.pose_watch import OUTAGE_PERIODS, OUTAGE_S
 from odometry.report.figure import LineStyle
 
 LONG = 20_000  # points; shorter lines are drawn as they are

@@ -22,10 +22,10 @@ import odometry
 import terrain
 from odometry.effects.corrected import Added, Corrected
 from odometry.effects.curvature import Curvature
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Imm
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.ekf_bank import EkfBank
+from odometry.estimation.imm.estimator import Imm
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.identification.problem import Problem
 from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig

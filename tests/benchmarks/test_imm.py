@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from filterpy.kalman import ExtendedKalmanFilter, IMMEstimator
 
-from odometry.estimation.ekf_bank import EkfBank, EkfModel
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.ekf_member import EkfMember
+from odometry.estimation.imm.ekf_bank import EkfBank, EkfModel
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.ekf_member import EkfMember
 
 STEP_S, STEPS = 0.05, 200
 Q = np.diag([4e-4, 4e-4, 1e-4]) * STEP_S

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from odometry.estimation.ekf_bank import EkfModel
+from odometry.estimation.imm.ekf_bank import EkfModel
 
 
 def positive(rng, size):

@@ -11,10 +11,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from odometry.estimation.ekf_bank import EkfBank, EkfModel
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.ekf_member import EkfMember
+from odometry.estimation.imm.ekf_bank import EkfBank, EkfModel
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.ekf_member import EkfMember
 from tests.reference.imm_systems import assert_same, linear_model, linear_system, positive
 
 seeds = st.integers(0, 2**32 - 1)

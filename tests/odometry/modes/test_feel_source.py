@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ParameterError
-from odometry.estimation.markov import ModeChain
+from odometry.estimation.imm.markov import ModeChain
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.windows import STEPS
 from odometry.modes.answers import named_modes

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.tempered_bank import with_lead, with_shared_bias
 
 LOGS = np.log([0.1, 0.9])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.ekf_bank import EkfBank
+from odometry.estimation.imm.ekf_bank import EkfBank
 from odometry.modes.tempered_bank import TemperedBank
 from tests.odometry.modes.mode_examples import velocity_set
 

@@ -8,10 +8,10 @@ Grounds that differ by little against the noise: see tests/odometry/estimation/t
 import numpy as np
 import pytest
 
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Imm
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.ekf_bank import EkfBank
+from odometry.estimation.imm.estimator import Imm
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.evaluation.open_loop_consistency import consistency, normalised_squared_errors
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.mode_set import ModeSet

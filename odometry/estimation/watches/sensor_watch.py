@@ -4,7 +4,9 @@ import math
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
-from odometry.estimation import (
+from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian
+from odometry.estimation.watches import (
     frozen_treads,
     gyroscope_hold,
     gyroscope_watch,
@@ -13,17 +15,15 @@ from odometry.estimation import (
     stuck_watch,
     tread_watch,
 )
-from odometry.estimation.bias_watch import BiasWatch
-from odometry.estimation.filter_event import FilterEvent
-from odometry.estimation.frozen_treads import FrozenTreads
-from odometry.estimation.gyroscope_hold import GyroscopeHold
-from odometry.estimation.gyroscope_watch import GyroscopeWatch
-from odometry.estimation.measurement import Gaussian
-from odometry.estimation.pose_watch import PoseWatch
-from odometry.estimation.rest_watch import RestWatch
-from odometry.estimation.slip_watch import SlipWatch
-from odometry.estimation.stuck_watch import StuckWatch
-from odometry.estimation.tread_watch import TreadWatch
+from odometry.estimation.watches.bias_watch import BiasWatch
+from odometry.estimation.watches.frozen_treads import FrozenTreads
+from odometry.estimation.watches.gyroscope_hold import GyroscopeHold
+from odometry.estimation.watches.gyroscope_watch import GyroscopeWatch
+from odometry.estimation.watches.pose_watch import PoseWatch
+from odometry.estimation.watches.rest_watch import RestWatch
+from odometry.estimation.watches.slip_watch import SlipWatch
+from odometry.estimation.watches.stuck_watch import StuckWatch
+from odometry.estimation.watches.tread_watch import TreadWatch
 from odometry.frames import Frame
 
 Events = tuple[FilterEvent, ...]

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.ekf_member import EkfMember
-from tests.odometry.estimation.imm_banks import (
+from odometry.estimation.imm.ekf_bank import EkfBank
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.ekf_member import EkfMember
+from tests.odometry.estimation.imm.imm_banks import (
     EVEN,
     LEANING,
     NOTHING,

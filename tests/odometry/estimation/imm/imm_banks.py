@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.estimation.ekf_bank import EkfModel
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.ekf_member import EkfMember
+from odometry.estimation.imm.ekf_bank import EkfModel
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.ekf_member import EkfMember
 
 NOTHING = np.zeros(0)
 EVEN = [[0.9, 0.1], [0.1, 0.9]]

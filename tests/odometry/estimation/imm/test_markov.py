@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import EstimationError
-from odometry.estimation.markov import ModeChain
+from odometry.estimation.imm.markov import ModeChain
 
 dwells = st.lists(st.floats(0.05, 1e4), min_size=1, max_size=6)
 microseconds = st.integers(0, 20_000_000)

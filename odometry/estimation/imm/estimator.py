@@ -15,7 +15,13 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import EstimationError
-from odometry.estimation.mode_belief import ModeBelief, ModeInnovations, floored, log_sum, moments
+from odometry.estimation.imm.mode_belief import (
+    ModeBelief,
+    ModeInnovations,
+    floored,
+    log_sum,
+    moments,
+)
 
 SUM_TOLERANCE = 1e-9
 

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.gyroscope_hold import BANDED, NOISY_S, SOUND, GyroscopeHold, _difference
 from odometry.estimation.transition import STATES, Y_LEFT, Y_RIGHT
+from odometry.estimation.watches.gyroscope_hold import (
+    BANDED,
+    NOISY_S,
+    SOUND,
+    GyroscopeHold,
+    _difference,
+)
 
 
 def held(rate_rad_s, width_m, changing_s=0.0):

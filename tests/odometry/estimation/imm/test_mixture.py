@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.estimation.mode_belief import floored, log_sum, moments
+from odometry.estimation.imm.mode_belief import floored, log_sum, moments
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import EstimationError
-from odometry.estimation.ekf_bank import EkfBank
-from odometry.estimation.imm import Members
-from tests.odometry.estimation.ekf_member import EkfMember
-from tests.odometry.estimation.imm_banks import pose_model
+from odometry.estimation.imm.ekf_bank import EkfBank
+from odometry.estimation.imm.estimator import Members
+from tests.odometry.estimation.imm.ekf_member import EkfMember
+from tests.odometry.estimation.imm.imm_banks import pose_model
 
 
 @given(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, STATES, Y_LEFT, Y_RIGHT
-from odometry.estimation.tread_watch import SAME_S, TreadWatch, contradicted
+from odometry.estimation.watches.tread_watch import SAME_S, TreadWatch, contradicted
 
 WIDTH_M, SPEED_M_S = 0.6, 1.0
 

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from odometry.estimation.frozen_treads import FROZEN_S, FrozenTreads, restored, stepped
 from odometry.estimation.transition import (
     ALPHA_LEFT,
     ALPHA_RIGHT,
@@ -15,6 +14,7 @@ from odometry.estimation.transition import (
     Y_RIGHT,
     YAW,
 )
+from odometry.estimation.watches.frozen_treads import FROZEN_S, FrozenTreads, restored, stepped
 from odometry.frames import Frame
 from odometry.geometry.angles import wrap
 from tests.odometry.estimation.sensor_drives import (

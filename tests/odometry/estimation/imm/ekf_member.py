@@ -4,7 +4,7 @@ import numpy as np
 from filterpy.kalman import ExtendedKalmanFilter
 
 from odometry.arrays import FloatArray
-from odometry.estimation.ekf_bank import EkfModel, log_density, wrapped
+from odometry.estimation.imm.ekf_bank import EkfModel, log_density, wrapped
 
 
 class EkfMember(ExtendedKalmanFilter):  # type: ignore[misc]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import EstimationError
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.mode_belief import ModeBelief
 
 MEANS, COVARIANCES, LOGS = np.zeros((2, 3)), np.tile(np.eye(3), (2, 1, 1)), np.log([0.25, 0.75])
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.pose_watch import moved
-from odometry.estimation.tread_watch import parted
+from odometry.estimation.watches.pose_watch import moved
+from odometry.estimation.watches.tread_watch import parted
 
 
 def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng):

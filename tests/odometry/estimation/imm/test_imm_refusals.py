@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import EstimationError
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.imm_banks import EVEN, NOTHING, Saying, two_rates
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.imm_banks import EVEN, NOTHING, Saying, two_rates
 
 
 @pytest.mark.parametrize("floor", [-0.1, 0.5, np.nan])

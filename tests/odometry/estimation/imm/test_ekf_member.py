@@ -8,9 +8,9 @@ from filterpy.kalman import KalmanFilter
 from scipy.stats import multivariate_normal
 
 from odometry.errors import EstimationError
-from odometry.estimation.ekf_bank import EkfModel
-from tests.odometry.estimation.ekf_member import EkfMember
-from tests.odometry.estimation.imm_banks import pose_model
+from odometry.estimation.imm.ekf_bank import EkfModel
+from tests.odometry.estimation.imm.ekf_member import EkfMember
+from tests.odometry.estimation.imm.imm_banks import pose_model
 
 
 def linear_model(rng, states=4, measured=3):

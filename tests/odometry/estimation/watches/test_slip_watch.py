@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
-from odometry.estimation.slip_watch import LASTS_S, WALK, watched
 from odometry.estimation.transition import STATES
+from odometry.estimation.watches.slip_watch import LASTS_S, WALK, watched
 from tests.odometry.estimation.sensor_drives import (
     ALPHAS,
     drive,

@@ -13,10 +13,10 @@ clusters and their squares spread more than chi-squared, though about the right 
 import numpy as np
 import pytest
 
-from odometry.estimation.ekf_bank import EkfBank, EkfModel
-from odometry.estimation.imm import Imm
-from odometry.estimation.markov import ModeChain
-from odometry.estimation.mode_belief import ModeBelief
+from odometry.estimation.imm.ekf_bank import EkfBank, EkfModel
+from odometry.estimation.imm.estimator import Imm
+from odometry.estimation.imm.markov import ModeChain
+from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.evaluation.open_loop_consistency import consistency, normalised_squared_errors
 
 RUNS, STEPS, STEP_S = 100, 200, 0.05

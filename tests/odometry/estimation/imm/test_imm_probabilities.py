@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.estimation.imm import Imm, Members
-from odometry.estimation.mode_belief import ModeBelief
-from tests.odometry.estimation.imm_banks import (
+from odometry.estimation.imm.estimator import Imm, Members
+from odometry.estimation.imm.mode_belief import ModeBelief
+from tests.odometry.estimation.imm.imm_banks import (
     EVEN,
     LEANING,
     NOTHING,
