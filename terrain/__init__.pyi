@@ -2,8 +2,8 @@ from .camera.camera import Camera
 from .checks.recording import check_run
 from .classification.answer import Classification
 from .classification.classifier import TerrainClassifier
-from .classification.network_features import NetworkFeatures
-from .classification.patches import cut_patches
+from .classification.features.network_features import NetworkFeatures
+from .classification.photographs.patches import cut_patches
 from .classification.sfta_features import SftaFeatures
 from .classification.training import Training, train
 from .config import Config

@@ -10,14 +10,14 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import balanced_accuracy, paired_difference
-from terrain.classification.patches import (
+from terrain.classification.photographs.patches import (
     LabelledPatches,
     find_photos,
     load_patches,
     stated_metres_per_pixel,
 )
-from terrain.classification.photo_faults import check_no_photo_in_two_classes
-from terrain.classification.trained_on import TrainedOn
+from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
+from terrain.classification.photographs.trained_on import TrainedOn
 from terrain.classification.training import Training
 from terrain.errors import PatchError
 

@@ -6,8 +6,8 @@ from typing import Protocol, Self
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
-from terrain.classification.likeness import FEWEST_IMAGES, Likeness
-from terrain.classification.noticed_alterations import may_pass_unnoticed
+from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.likeness.noticed_alterations import may_pass_unnoticed
 
 # Probability of being right: a wrong name costs more than twice what a right one brings.
 TRUSTED = 0.7

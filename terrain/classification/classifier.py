@@ -11,13 +11,18 @@ from sklearn.utils.validation import validate_data
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
-from terrain.classification.feature_jobs import Transformer, shared_feature_matrix
+from terrain.classification.features.feature_jobs import Transformer, shared_feature_matrix
 from terrain.classification.learning import LearningClassifier
+from terrain.classification.neighbours.validation import Samples
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
-from terrain.classification.patches import LabelledPatches
+from terrain.classification.photographs.patches import LabelledPatches
+from terrain.classification.photographs.trained_on import (
+    TrainedOn,
+    as_images,
+    check_labels,
+    holds_images,
+)
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained_on import TrainedOn, as_images, check_labels, holds_images
-from terrain.classification.validation import Samples
 
 
 class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # type: ignore[misc]

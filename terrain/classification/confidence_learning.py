@@ -8,16 +8,16 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray, IntArray
-from terrain.classification.augmentation import Augmentation, altered
-from terrain.classification.calibration import tempered
 from terrain.classification.confidence import WEIGHTS, AnswerConfidence, evidence
-from terrain.classification.look import look_of, spread_rows
-from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.likeness.look import look_of, spread_rows
+from terrain.classification.likeness.training_look import TrainingLook
+from terrain.classification.neighbours.calibration import tempered
+from terrain.classification.neighbours.neighbours import Neighbours, vote
+from terrain.classification.neighbours.rejection import PATCHES, as_of_one_patch, images_of_patches
+from terrain.classification.neighbours.validation import Fold, Samples
 from terrain.classification.other_things import SQUARES
-from terrain.classification.rejection import PATCHES, as_of_one_patch, images_of_patches
-from terrain.classification.trained_on import image_sum
-from terrain.classification.training_look import TrainingLook
-from terrain.classification.validation import Fold, Samples
+from terrain.classification.photographs.augmentation import Augmentation, altered
+from terrain.classification.photographs.trained_on import image_sum
 
 CROP = 4  # times as wide as a patch, at the most, of a patch beside its mirror images
 NOT_KNOWN = -1

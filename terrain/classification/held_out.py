@@ -11,7 +11,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import LabelledPhoto
+from terrain.classification.photographs.patches import LabelledPhoto
 from terrain.errors import ImageError
 from terrain.images import read_image
 

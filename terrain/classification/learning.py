@@ -7,7 +7,6 @@ import numpy as np
 from sklearn.base import clone
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
-from terrain.classification.colour_range import ColourRange
 from terrain.classification.confidence import WEIGHTS, weight_of_others
 from terrain.classification.confidence_learning import (
     Answers,
@@ -18,20 +17,21 @@ from terrain.classification.confidence_learning import (
     shown_patches,
     shown_squares,
 )
-from terrain.classification.feature_jobs import Transformed, features_of
-from terrain.classification.features import FeatureSettings
-from terrain.classification.look import spread_rows
-from terrain.classification.neighbours import DiscriminantNeighbours
+from terrain.classification.features.feature_jobs import Transformed, features_of
+from terrain.classification.features.features import FeatureSettings
+from terrain.classification.likeness.colour_range import ColourRange
+from terrain.classification.likeness.look import spread_rows
+from terrain.classification.likeness.noticed_alterations import noticed_share
+from terrain.classification.likeness.training_look import TrainingLook
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours
+from terrain.classification.neighbours.rejection import quantiles, rejection_distances
+from terrain.classification.neighbours.validation import CrossValidation, Fold, Samples, best_way
 from terrain.classification.no_ground import ShownGround
-from terrain.classification.noticed_alterations import noticed_share
 from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import PHOTOGRAPHS, OtherThings, squares_of
+from terrain.classification.photographs.trained_on import common_size, has_colour
 from terrain.classification.presets import PRESETS
-from terrain.classification.rejection import quantiles, rejection_distances
 from terrain.classification.trained import TrainedClassifier
-from terrain.classification.trained_on import common_size, has_colour
-from terrain.classification.training_look import TrainingLook
-from terrain.classification.validation import CrossValidation, Fold, Samples, best_way
 from terrain.errors import PatchError
 from terrain.images import to_grey
 from terrain.one_thread import one_thread

@@ -9,20 +9,20 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.errors import ConfigError
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
-from terrain.classification.colour_range import ColourRange
 from terrain.classification.confidence import AnswerConfidence
-from terrain.classification.feature_jobs import Transformed, Transformer, features_of
-from terrain.classification.features import FeatureSettings
-from terrain.classification.look import look_of
+from terrain.classification.features.feature_jobs import Transformed, Transformer, features_of
+from terrain.classification.features.features import FeatureSettings
+from terrain.classification.features.network_features import NetworkFeatures
+from terrain.classification.likeness.colour_range import ColourRange
+from terrain.classification.likeness.look import look_of
+from terrain.classification.likeness.training_look import TrainingLook
 from terrain.classification.model_settings import ModelSettings, NetworkSettings
-from terrain.classification.neighbours import Neighbours
-from terrain.classification.network_features import NetworkFeatures
+from terrain.classification.neighbours.neighbours import Neighbours
 from terrain.classification.no_ground import ShownGround
 from terrain.classification.old_samples import OldSamples
 from terrain.classification.other_things import OtherThings
+from terrain.classification.photographs.trained_on import TrainedOn, check_codes
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained_on import TrainedOn, check_codes
-from terrain.classification.training_look import TrainingLook
 from terrain.errors import ImageError, ModelFileError, NetworkError
 
 CLASSIFIER = FileKind("terrain-odometry classifier", 1, "model file", ModelFileError)

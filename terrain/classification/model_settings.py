@@ -9,11 +9,11 @@ from typing import Any, Self, get_args, get_origin, get_type_hints
 import numpy as np
 
 from odometry.arrays import AnyArray
-from terrain.classification.calibration import TEMPERATURES
-from terrain.classification.features import FeatureSettings
-from terrain.classification.network_features import Network, NetworkFeatures
-from terrain.classification.rejection import PATCHES
-from terrain.classification.trained_on import TrainedOn
+from terrain.classification.features.features import FeatureSettings
+from terrain.classification.features.network_features import Network, NetworkFeatures
+from terrain.classification.neighbours.calibration import TEMPERATURES
+from terrain.classification.neighbours.rejection import PATCHES
+from terrain.classification.photographs.trained_on import TrainedOn
 
 ARRAY = "network"  # its bytes, in the model file
 

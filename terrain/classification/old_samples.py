@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.validation import Samples
+from terrain.classification.neighbours.validation import Samples
 
 LEAST_SPREAD = 1e-9  # of a feature: one that does not vary stays finite
 

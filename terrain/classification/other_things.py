@@ -10,10 +10,10 @@ import numpy as np
 import skimage.data
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
-from terrain.classification.metric import DiscriminantMetric
+from terrain.classification.neighbours.metric import DiscriminantMetric
+from terrain.classification.neighbours.rejection import PATCHES, images_of_patches, rejection_limit
+from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.no_ground import NO_GROUND
-from terrain.classification.rejection import PATCHES, images_of_patches, rejection_limit
-from terrain.classification.validation import grouped_folds
 from terrain.images import to_bytes
 
 THINGS = NO_GROUND + "like photographs of things"

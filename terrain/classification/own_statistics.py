@@ -10,8 +10,8 @@ from odometry.errors import ConfigError
 from terrain.classification.answer import Classification, Classifier
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.config import ClassifierConfig
-from terrain.classification.metric import ClippedScaler
-from terrain.classification.neighbours import DiscriminantNeighbours
+from terrain.classification.neighbours.metric import ClippedScaler
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours
 
 LEAST = 0.01  # of a deviation in training: a feature that varies less is taken as in training
 TWO_CAMERAS = "own statistics are for another camera than that of training, same camera is not"

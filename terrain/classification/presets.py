@@ -8,10 +8,14 @@ import numpy as np
 from sklearn.pipeline import make_pipeline
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.copies import COLOUR_COPIES, GREY_COPIES
-from terrain.classification.features import FEWER_GREYS, FeatureSettings
-from terrain.classification.nearest import brute_force, labels_and_sample_distances
-from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, linear_neighbours
+from terrain.classification.features.copies import COLOUR_COPIES, GREY_COPIES
+from terrain.classification.features.features import FEWER_GREYS, FeatureSettings
+from terrain.classification.neighbours.nearest import brute_force, labels_and_sample_distances
+from terrain.classification.neighbours.neighbours import (
+    DiscriminantNeighbours,
+    Neighbours,
+    linear_neighbours,
+)
 
 
 class PlainNeighbours:
@@ -64,7 +68,7 @@ class Preset:
     features, colour_features : FeatureSettings
         Without and with colour.
     neighbours : type
-        One of the classes of `terrain.classification.neighbours`.
+        One of the classes of `terrain.classification.neighbours.neighbours`.
     ways : tuple of callable
         What makes them: cross-validation chooses one.
     neighbour_counts : tuple of int

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ConfigError
-from terrain.classification.feature_jobs import shared_feature_matrix
-from terrain.classification.features import FeatureSettings, feature_names
+from terrain.classification.features.feature_jobs import shared_feature_matrix
+from terrain.classification.features.features import FeatureSettings, feature_names
 from terrain.classification.presets import PRESETS
 from terrain.images import to_bytes
 from terrain.texture.transformer import ImageTransformer, listed_images, naming_image

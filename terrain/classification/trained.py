@@ -11,17 +11,17 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import COLOURLESS, Classification
-from terrain.classification.calibration import tempered
-from terrain.classification.colour_range import is_colourless
-from terrain.classification.feature_jobs import features_of
-from terrain.classification.likeness import FEWEST_IMAGES, Likeness
-from terrain.classification.look import look_of, looks_of, middle_of
+from terrain.classification.features.feature_jobs import features_of
+from terrain.classification.likeness.colour_range import is_colourless
+from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.likeness.look import look_of, looks_of, middle_of
 from terrain.classification.model_file import ModelFile
-from terrain.classification.neighbours import DiscriminantNeighbours, Neighbours, vote
+from terrain.classification.neighbours.calibration import tempered
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, Neighbours, vote
+from terrain.classification.neighbours.rejection import as_of_one_patch
 from terrain.classification.other_things import THINGS
-from terrain.classification.patches import cut_patches
-from terrain.classification.rejection import as_of_one_patch
-from terrain.classification.trained_on import as_images, holds_images
+from terrain.classification.photographs.patches import cut_patches
+from terrain.classification.photographs.trained_on import as_images, holds_images
 from terrain.errors import ImageError
 
 

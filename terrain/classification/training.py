@@ -3,17 +3,17 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from terrain.classification.augmentation import Augmentation, load_copies
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.feature_jobs import Transformer
-from terrain.classification.patches import (
+from terrain.classification.features.feature_jobs import Transformer
+from terrain.classification.photographs.augmentation import Augmentation, load_copies
+from terrain.classification.photographs.patches import (
     LabelledPatches,
     find_photos,
     fitting_side_px,
     load_patches,
     stated_metres_per_pixel,
 )
-from terrain.classification.photo_faults import check_no_photo_in_two_classes
+from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
 
 LARGEST_PATCH_PX = 128
 

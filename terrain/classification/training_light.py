@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
-from terrain.classification.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
 
 # Of the light of training. Runs of photographs held out, of terrain that is known, lie within.
 USUAL_LIGHT = 0.75, 1.33

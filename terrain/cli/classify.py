@@ -10,7 +10,7 @@ import click
 
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.classification.likeness import Likeness
+    from terrain.classification.likeness.likeness import Likeness
 
 
 @click.command()
@@ -88,7 +88,7 @@ def _standardised(
 ) -> "TerrainClassifier":
     """The classifier with the statistics of all images that can be used."""
     from terrain.classification.own_statistics import OwnStatisticsClassifier
-    from terrain.classification.patches import find_photos
+    from terrain.classification.photographs.patches import find_photos
     from terrain.errors import ImageError
     from terrain.images import read_image
 

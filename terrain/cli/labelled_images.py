@@ -12,7 +12,7 @@ import click
 if TYPE_CHECKING:
     from terrain.classification.classifier import TerrainClassifier
     from terrain.classification.held_out import HeldOutScore, LabelledAnswer
-    from terrain.classification.likeness import Likeness
+    from terrain.classification.likeness.likeness import Likeness
 
 SAME_SCALE = 0.02  # share by which two scales may differ
 
@@ -33,8 +33,8 @@ def print_held_out(
         If the folder is not as the format says, or the model was trained on every image in it.
     """
     from terrain.classification.held_out import answer_photos, held_out_score
-    from terrain.classification.patches import SUFFIXES, find_photos
-    from terrain.classification.photo_faults import unread_note
+    from terrain.classification.photographs.patches import SUFFIXES, find_photos
+    from terrain.classification.photographs.photo_faults import unread_note
     from terrain.errors import PatchError
 
     photos = find_photos(folder)
@@ -97,7 +97,7 @@ def _notes(
 
 
 def _of_scale(classifier: "TerrainClassifier", folder: Path) -> list[str]:
-    from terrain.classification.patches import stated_metres_per_pixel
+    from terrain.classification.photographs.patches import stated_metres_per_pixel
 
     own, stated = classifier.metres_per_pixel, stated_metres_per_pixel(folder)
     if own is None or stated is None or abs(stated - own) <= SAME_SCALE * own:
@@ -187,7 +187,7 @@ if TYPE_CHECKING:
 
 def print_likeness(likeness: "Likeness | None", noticed_share: float | None = None) -> None:
     """Say so where images are unlike, as a whole, or where that would not be noticed."""
-    from terrain.classification.noticed_alterations import unnoticed
+    from terrain.classification.likeness.noticed_alterations import unnoticed
 
     if likeness is not None and (note := likeness.note or unnoticed(noticed_share)) is not None:
         click.echo(f"Note: {note}", err=True)

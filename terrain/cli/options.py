@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from terrain.classification.network_features import NetworkFeatures
+    from terrain.classification.features.network_features import NetworkFeatures
 
 # Those of odometry.models.catalogue, which is too slow to import for a --help.
 MODEL_NAMES = (
@@ -197,7 +197,7 @@ def network_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _features(network: Path, layers: str | None, input_range: str | None) -> "NetworkFeatures":
-    from terrain.classification.network_features import NetworkFeatures
+    from terrain.classification.features.network_features import NetworkFeatures
 
     low, _, high = (input_range or "-1:1").partition(":")
     try:

@@ -16,7 +16,7 @@ from terrain.cli.options import (
 
 if TYPE_CHECKING:
     from terrain.classification.adaptation import Adaptation
-    from terrain.classification.network_features import NetworkFeatures
+    from terrain.classification.features.network_features import NetworkFeatures
     from terrain.classification.training import Training
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from terrain.classification.manifest import read_manifest
-from terrain.classification.noticed_alterations import unnoticed
-from terrain.classification.patches import SUFFIXES, LabelledPatches
-from terrain.classification.photo_faults import look_alikes, unread_note
-from terrain.classification.photo_origins import set_apart
+from terrain.classification.likeness.noticed_alterations import unnoticed
+from terrain.classification.photographs.manifest import read_manifest
+from terrain.classification.photographs.patches import SUFFIXES, LabelledPatches
+from terrain.classification.photographs.photo_faults import look_alikes, unread_note
+from terrain.classification.photographs.photo_origins import set_apart
 from terrain.classification.training import LARGEST_PATCH_PX, Training
 
 

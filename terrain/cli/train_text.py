@@ -7,7 +7,6 @@ import numpy as np
 
 from odometry.arrays import AnyArray
 from odometry.outputs.output_file import picture_source
-from terrain.classification.calibration import reliability, reliability_by_chance
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import (
     balanced_accuracy,
@@ -15,8 +14,9 @@ from terrain.classification.held_out import (
     confusion_text,
     photo_votes,
 )
-from terrain.classification.patches import LabelledPatches
-from terrain.classification.validation import CrossValidation
+from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
+from terrain.classification.neighbours.validation import CrossValidation
+from terrain.classification.photographs.patches import LabelledPatches
 from terrain.cli.outputs import claim_picture
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classifier
-from terrain.classification.rejection import as_of_one_patch, rejection_limit
+from terrain.classification.neighbours.rejection import as_of_one_patch, rejection_limit
 from terrain.image_labels.image_label import ImageLabel
 
 LENGTH_M = 2.0  # of wheel travel that is judged together

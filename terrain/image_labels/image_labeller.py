@@ -14,9 +14,9 @@ from odometry.frames import Frame
 from odometry.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
 from terrain.classification.answer import ONE_CHANNEL, Classifier
-from terrain.classification.likeness import Likeness
-from terrain.classification.look import look_of, middle_of
-from terrain.classification.trained_on import as_images
+from terrain.classification.likeness.likeness import Likeness
+from terrain.classification.likeness.look import look_of, middle_of
+from terrain.classification.photographs.trained_on import as_images
 from terrain.classification.training_light import unless_by_light
 from terrain.errors import CameraError, ImageError
 from terrain.image_labels.details_watch import DetailsWatch
@@ -27,8 +27,8 @@ from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_reg
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
 
 if TYPE_CHECKING:
-    from terrain.classification.colour_range import ColourRange
-    from terrain.classification.training_look import TrainingLook
+    from terrain.classification.likeness.colour_range import ColourRange
+    from terrain.classification.likeness.training_look import TrainingLook
 
 KEPT, LATEST = 200, 10  # statistics of the latest images, and of those in one light
 # ground/ to pavements/, standardised: 0.47 right of four terrains is 0.3 of the way from chance

@@ -18,7 +18,7 @@ from odometry.windows.gaps import GapsSoFar
 from terrain.camera.camera import Camera
 from terrain.classification.answer import COLOURLESS, ONE_CHANNEL, colourless_note
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness.likeness import Likeness
 from terrain.config import Config
 from terrain.image_labels.image_labeller import OTHER_SIZE
 from terrain.live.live_feel import LiveFelt

@@ -8,14 +8,14 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
 from odometry.report.figure import save_figure
-from terrain.classification.calibration import (
+from terrain.classification.neighbours.calibration import (
     BINS,
     Reliability,
     ReliabilityByChance,
     reliability,
     reliability_by_chance,
 )
-from terrain.classification.validation import CrossValidation
+from terrain.classification.neighbours.validation import CrossValidation
 
 _SIZE_IN = (5.6, 6.4)
 _RIGHT, _CHANCE = "#0072B2", "#C9CED6"

@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.run import UNKNOWN
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, colourless_note
+from terrain.classification.likeness.noticed_alterations import unnoticed
 from terrain.classification.no_ground import no_ground_note
-from terrain.classification.noticed_alterations import unnoticed
 from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
 from terrain.result.evaluation_notes import event_line

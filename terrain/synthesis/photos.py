@@ -12,7 +12,7 @@ from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.simulation.ground import GroundMap
 from terrain.camera.camera import Camera
-from terrain.classification.patches import LabelledPhoto, find_photos
+from terrain.classification.photographs.patches import LabelledPhoto, find_photos
 from terrain.errors import SynthesisError, TerrainError
 from terrain.images import read_image, to_grey
 from terrain.region.region import Rectangle

@@ -36,8 +36,8 @@ from odometry.windows.config import WindowConfig
 from odometry.windows.motion import linearised_window_motion
 from odometry.windows.noise import pose_variances
 from odometry.windows.windows import windows_of
-from terrain.classification.features import feature_matrix
-from terrain.classification.nearest import nearest
+from terrain.classification.features.features import feature_matrix
+from terrain.classification.neighbours.nearest import nearest
 from terrain.classification.presets import PRESETS
 from terrain.one_thread import one_thread
 from terrain.texture import sfta

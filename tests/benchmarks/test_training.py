@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 
-from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features.feature_jobs import shared_feature_matrix
 from terrain.classification.presets import PRESETS
 
 PATCHES = 400

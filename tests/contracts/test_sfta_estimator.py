@@ -9,11 +9,11 @@ from contextlib import contextmanager
 import numpy as np
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from terrain.classification.network_features import Network, NetworkFeatures
+from terrain.classification.features.network_features import Network, NetworkFeatures
 from terrain.classification.sfta_features import SftaFeatures
 from terrain.errors import ImageError
 from terrain.texture import SFTA
-from tests.terrain.classification.onnx_bytes import tiny_network
+from tests.terrain.classification.features.onnx_bytes import tiny_network
 
 TINY = Network("tiny.onnx", tiny_network())
 SIZES_DIFFER = "images may differ in size: there is no number of columns to remember"

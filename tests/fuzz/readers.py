@@ -21,7 +21,7 @@ from odometry.windows.run_inputs import inputs_of
 from odometry.windows.windows import windows_of
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import find_photos, stated_metres_per_pixel
+from terrain.classification.photographs.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.evaluate import _rows
 from terrain.config import Config
 from terrain.images import read_image

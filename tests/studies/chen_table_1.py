@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 from sklearn.model_selection import StratifiedKFold
 
-from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features.feature_jobs import shared_feature_matrix
 from terrain.classification.held_out import balanced_accuracy, confusion, confusion_text
-from terrain.classification.neighbours import vote
-from terrain.classification.patches import find_photos, load_patches
+from terrain.classification.neighbours.neighbours import vote
+from terrain.classification.neighbours.validation import Samples, best_way, grouped_folds
+from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import Samples, best_way, grouped_folds
 
 CHEN = PRESETS["chen2023"]
 FOLDERS = {

@@ -20,11 +20,11 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
 from terrain.classification.held_out import balanced_accuracy
-from terrain.classification.neighbours import Neighbours, vote
+from terrain.classification.neighbours.neighbours import Neighbours, vote
+from terrain.classification.neighbours.validation import Samples, cross_validate
 from terrain.classification.old_samples import SamplesBesideOld
-from terrain.classification.patches import find_photos, load_patches
+from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import Samples, cross_validate
 from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, both_features
 
 PRESET = PRESETS["default"]

@@ -20,19 +20,19 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from terrain.classification.calibration import reliability
-from terrain.classification.feature_jobs import shared_feature_matrix
+from terrain.classification.features.feature_jobs import shared_feature_matrix
 from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     photo_votes,
     rejection_roc_area,
 )
+from terrain.classification.neighbours.calibration import reliability
+from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.own_statistics import Moments, own_scaler, own_weight
-from terrain.classification.patches import cut_patches, find_photos
+from terrain.classification.photographs.patches import cut_patches, find_photos
+from terrain.classification.photographs.trained_on import image_sum
 from terrain.classification.presets import PRESETS
-from terrain.classification.trained_on import image_sum
-from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_grounds import Chosen, Grounds, choose, read_copies, read_grounds
 

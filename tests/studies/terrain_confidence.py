@@ -26,10 +26,15 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
-from terrain.classification.calibration import reliability, reliability_by_chance
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import LabelledPhoto, cut_patches, find_photos, load_patches
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
+from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.patches import (
+    LabelledPhoto,
+    cut_patches,
+    find_photos,
+    load_patches,
+)
 from terrain.images import read_image
 from tests.studies.terrain_likeness import blurred, compressed, gamma, noisy
 from tests.studies.terrain_things import development, reserved

@@ -21,8 +21,8 @@ import numpy as np
 from odometry.arrays import ByteImage, FloatArray
 from odometry.run import UNKNOWN
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import LabelledPhoto, find_photos, load_patches
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.patches import LabelledPhoto, find_photos, load_patches
 from terrain.images import read_image
 from tests.studies.terrain_left_out import SIZE_PX, middle
 from tests.studies.terrain_likeness import blurred, compressed, gamma, times

@@ -21,8 +21,8 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray
 from odometry.run import UNKNOWN
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import find_photos, load_patches
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.patches import find_photos, load_patches
 from tests.studies.terrain_left_out import FOLDS, PARTS, SIZE_PX, SURE, Answer, answers, is_sure
 
 DEVELOPMENT, HELD_OUT = "development", "held-out"

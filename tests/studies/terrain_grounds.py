@@ -7,16 +7,20 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
-from terrain.classification.augmentation import Augmentation, load_copies
-from terrain.classification.calibration import tempered
-from terrain.classification.feature_jobs import shared_feature_matrix
-from terrain.classification.features import feature_names
+from terrain.classification.features.feature_jobs import shared_feature_matrix
+from terrain.classification.features.features import feature_names
 from terrain.classification.held_out import balanced_accuracy
-from terrain.classification.neighbours import Neighbours, vote
-from terrain.classification.patches import find_photos, load_patches
+from terrain.classification.neighbours.calibration import tempered
+from terrain.classification.neighbours.neighbours import Neighbours, vote
+from terrain.classification.neighbours.rejection import (
+    as_of_one_patch,
+    quantiles,
+    rejection_distances,
+)
+from terrain.classification.neighbours.validation import Samples, best_way
+from terrain.classification.photographs.augmentation import Augmentation, load_copies
+from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, Preset
-from terrain.classification.rejection import as_of_one_patch, quantiles, rejection_distances
-from terrain.classification.validation import Samples, best_way
 
 REJECTED_SHARE = 0.05
 PER_COPY = 24

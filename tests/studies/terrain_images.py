@@ -25,8 +25,8 @@ from terrain.classification.held_out import (
     photo_votes,
     rejection_roc_area,
 )
+from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import grouped_folds
 from tests.studies.terrain_grounds import Grounds, Way, choose, joined, read_grounds
 
 NEW_CAMERA_DRAWS = 5

@@ -20,11 +20,11 @@ import numpy as np
 from odometry.arrays import ByteImage
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
-from terrain.classification.calibration import reliability, reliability_by_chance
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import balanced_accuracy, balanced_accuracy_interval
-from terrain.classification.patches import LabelledPhoto, find_photos, load_patches
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
+from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.patches import LabelledPhoto, find_photos, load_patches
 from terrain.images import read_image
 from tests.studies.terrain_confidence import likeliest
 

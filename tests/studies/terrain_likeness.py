@@ -21,10 +21,10 @@ import numpy as np
 from odometry.arrays import AnyArray, ByteImage, FloatArray
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import balanced_accuracy
-from terrain.classification.look import look_of
-from terrain.classification.patches import cut_patches, find_photos, load_patches
-from terrain.classification.training_look import TrainingLook
-from terrain.classification.validation import grouped_folds
+from terrain.classification.likeness.look import look_of
+from terrain.classification.likeness.training_look import TrainingLook
+from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.patches import cut_patches, find_photos, load_patches
 from terrain.images import read_image
 
 SIZE_PX, SQUARES, RUN, RUNS = 96, 4, 12, 100

@@ -17,17 +17,17 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from terrain.classification.feature_jobs import Transformed, features_of
+from terrain.classification.features.feature_jobs import Transformed, features_of
+from terrain.classification.features.network_features import NetworkFeatures
 from terrain.classification.held_out import (
     balanced_accuracy,
     balanced_accuracy_interval,
     photo_votes,
 )
-from terrain.classification.neighbours import vote
-from terrain.classification.network_features import NetworkFeatures
-from terrain.classification.patches import LabelledPatches, find_photos, load_patches
+from terrain.classification.neighbours.neighbours import vote
+from terrain.classification.neighbours.validation import Samples, cross_validate, grouped_folds
+from terrain.classification.photographs.patches import LabelledPatches, find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import Samples, cross_validate, grouped_folds
 
 PRESET = PRESETS["default"]
 

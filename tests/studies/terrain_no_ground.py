@@ -26,7 +26,8 @@ from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.features import feature_matrix
+from terrain.classification.features.features import feature_matrix
+from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.other_things import (
     PHOTOGRAPHS,
     SQUARES,
@@ -34,9 +35,13 @@ from terrain.classification.other_things import (
     OtherThings,
     squares_of,
 )
-from terrain.classification.patches import LabelledPatches, cut_patches, find_photos, load_patches
+from terrain.classification.photographs.patches import (
+    LabelledPatches,
+    cut_patches,
+    find_photos,
+    load_patches,
+)
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_things import development, reserved
 

@@ -23,12 +23,16 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from terrain.classification.calibration import reliability, reliability_by_chance, tempered
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.neighbours import vote
-from terrain.classification.patches import LabelledPhoto, find_photos, load_patches
+from terrain.classification.neighbours.calibration import (
+    reliability,
+    reliability_by_chance,
+    tempered,
+)
+from terrain.classification.neighbours.neighbours import vote
+from terrain.classification.neighbours.validation import Samples, best_way, grouped_folds
+from terrain.classification.photographs.patches import LabelledPhoto, find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from terrain.classification.validation import Samples, best_way, grouped_folds
 from terrain.images import read_image
 from tests.studies.terrain_confidence import ALTERED, FOLDS, OTHER, SIZE_PX, SURE, Change
 from tests.studies.terrain_grounds import COLUMNS, Grounds, read_grounds

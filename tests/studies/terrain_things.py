@@ -16,7 +16,7 @@ from skimage import data as pictures
 from sklearn.datasets import load_sample_image
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray
-from terrain.classification.patches import cut_patches
+from terrain.classification.photographs.patches import cut_patches
 from terrain.images import read_image
 
 MADE = 30

@@ -23,9 +23,9 @@ from scipy.spatial.distance import cdist
 
 from odometry.arrays import FloatArray
 from terrain.classification.held_out import rejection_roc_area
-from terrain.classification.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
-from terrain.classification.neighbours import DiscriminantNeighbours, vote
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, vote
+from terrain.classification.neighbours.validation import grouped_folds
 from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 
 PER_PHOTO, FOLDS = 12, 2

@@ -18,8 +18,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from terrain.classification.held_out import rejection_roc_area
-from terrain.classification.neighbours import DiscriminantNeighbours, linear_neighbours
-from terrain.classification.validation import grouped_folds
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, linear_neighbours
+from terrain.classification.neighbours.validation import grouped_folds
 from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 from tests.studies.terrain_unknown import FOLDS as FEWER_FOLDS
 from tests.studies.terrain_unknown import REJECTED, parts, thinned

@@ -16,7 +16,7 @@ from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.ground import GroundMap
 from terrain.camera.camera import Camera
-from terrain.classification.patches import find_photos
+from terrain.classification.photographs.patches import find_photos
 from terrain.cli.synthesise import synthesise as command
 from terrain.errors import SynthesisError
 from terrain.images import read_image

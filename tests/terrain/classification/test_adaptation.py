@@ -9,10 +9,10 @@ from terrain.classification import adaptation
 from terrain.classification.adaptation import ALONE, MIXED, OLD, _in_parts, adapt, clearly_best
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.model_file import read_model, write_model
+from terrain.classification.neighbours.validation import Samples
 from terrain.classification.old_samples import SamplesBesideOld
-from terrain.classification.patches import LabelledPatches
-from terrain.classification.trained_on import TrainedOn
-from terrain.classification.validation import Samples
+from terrain.classification.photographs.patches import LabelledPatches
+from terrain.classification.photographs.trained_on import TrainedOn
 from terrain.cli.train import train
 from terrain.errors import ModelFileError, PatchError
 

@@ -18,7 +18,7 @@ from terrain.classification.answer import (
 )
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.confidence import AnswerConfidence
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness.likeness import Likeness
 from terrain.cli.classify import classify
 from tests.terrain.classification.test_no_ground import photographs
 

@@ -6,7 +6,7 @@ from sklearn.neighbors import KNeighborsClassifier
 
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.features import patch_features
+from terrain.classification.features.features import patch_features
 from terrain.classification.model_file import read_model, write_model
 from terrain.classification.presets import PRESETS
 from terrain.errors import ImageError, ModelFileError, PatchError

@@ -24,7 +24,7 @@ from terrain.classification.confidence_learning import (
     other_terrains,
 )
 from terrain.classification.model_file import read_model, write_model
-from terrain.classification.validation import Fold, Samples
+from terrain.classification.neighbours.validation import Fold, Samples
 from terrain.errors import ModelFileError
 from tests.terrain.classification.test_no_ground import ground, photographs
 

@@ -10,9 +10,9 @@ from sklearn.metrics import recall_score
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import LabelledAnswer, answer_photos, held_out_score
-from terrain.classification.patches import LabelledPhoto, find_photos
-from terrain.classification.thumbnails import thumbnail_text
-from terrain.classification.trained_on import TrainedOn, image_sum
+from terrain.classification.photographs.patches import LabelledPhoto, find_photos
+from terrain.classification.photographs.thumbnails import thumbnail_text
+from terrain.classification.photographs.trained_on import TrainedOn, image_sum
 from terrain.images import read_image
 
 

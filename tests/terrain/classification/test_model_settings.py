@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.features import FeatureSettings
+from terrain.classification.features.features import FeatureSettings
 from terrain.classification.model_file import read_model, write_model
 from terrain.classification.model_settings import ATTRIBUTES, ModelSettings
-from terrain.classification.trained_on import TrainedOn
+from terrain.classification.photographs.trained_on import TrainedOn
 
 SETTINGS = ModelSettings(
     preset="default",

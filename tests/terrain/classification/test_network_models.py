@@ -13,12 +13,12 @@ from sklearn.base import BaseEstimator, TransformerMixin, clone
 
 from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.features.network_features import Network, NetworkFeatures
 from terrain.classification.model_file import read_model, write_model
-from terrain.classification.network_features import Network, NetworkFeatures
 from terrain.cli.train import train
 from terrain.errors import ModelFileError, PatchError
 from terrain.main_job import run_odometry
-from tests.terrain.classification.onnx_bytes import tiny_features, tiny_network
+from tests.terrain.classification.features.onnx_bytes import tiny_features, tiny_network
 
 TINY = NetworkFeatures(Network("tiny.onnx", tiny_network()), layers=("r1", "r2"))
 NEW = np.random.default_rng(11).integers(0, 256, (4, 32, 32), dtype=np.uint8)

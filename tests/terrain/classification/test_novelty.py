@@ -1,6 +1,6 @@
 import numpy as np
 
-from terrain.classification.nearest import LocalSparsity, classes_left_open
+from terrain.classification.neighbours.nearest import LocalSparsity, classes_left_open
 
 
 def by_loops(points, queries, k=5):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from terrain.classification.answer import Classification
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness.likeness import Likeness
 from terrain.classification.training_light import BY_LIGHT, unless_by_light
 
 DARK = Likeness(20, 0.5, 0.5, (), beyond=1.1, light=0.4)

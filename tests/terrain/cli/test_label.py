@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.patches import find_photos
+from terrain.classification.photographs.patches import find_photos
 from terrain.cli.label import label
 from terrain.cli.train import train
 from terrain.images import read_image

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from joblib.externals.loky import get_reusable_executor
 
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.validation import CrossValidation
+from terrain.classification.neighbours.validation import CrossValidation
 from terrain.cli.classify import classify
 from terrain.cli.train import train
 from terrain.cli.train_text import calibration_words

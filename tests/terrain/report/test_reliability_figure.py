@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from terrain.classification.calibration import reliability, reliability_by_chance
-from terrain.classification.validation import CrossValidation
+from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
+from terrain.classification.neighbours.validation import CrossValidation
 from terrain.report.reliability_figure import plot_reliability, write_reliability_figure
 
 VOTES = np.array([[0.95, 0.05]] * 40 + [[0.35, 0.65]] * 20)

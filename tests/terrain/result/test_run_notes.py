@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
 from terrain.classification.answer import COLOURLESS, ONE_CHANNEL
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
 from terrain.result.run_notes import event_lines, run_notes

@@ -9,7 +9,7 @@ import pytest
 from odometry.frames import Frame
 from odometry.run_terrains import Footing
 from terrain.camera.camera import Camera
-from terrain.classification.likeness import Likeness
+from terrain.classification.likeness.likeness import Likeness
 from terrain.errors import CameraError
 from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.image_labeller import RunLikeness

@@ -1,0 +1,1 @@
+"""Feature vectors of patches: SFTA, statistics, and layers of image networks."""

@@ -1,0 +1,1 @@
+"""Nearest neighbours: their spaces, votes, calibration, and distances that are too far."""
