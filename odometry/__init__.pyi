@@ -33,8 +33,8 @@ from .live_frames import LiveFrames
 from .models.catalogue import MODELS, model_named
 from .models.inputs import Inputs
 from .modes.followed import followed
-from .modes.identify_traction import identify_traction_modes
-from .modes.identify_velocity import identify_velocity_modes
+from .modes.identify.identify_traction import identify_traction_modes
+from .modes.identify.identify_velocity import identify_velocity_modes
 from .modes.mode_set import ModeSet
 from .modes.mode_set_file import read_mode_set, write_mode_set
 from .modes.track import ModeTrack, follow_modes

@@ -3,12 +3,12 @@
 from dataclasses import dataclass, field
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
-from odometry.modes.between_modes import BetweenModes
-from odometry.modes.gain_check import GainCheck
+from odometry.modes.checks.between_modes import BetweenModes
+from odometry.modes.checks.gain_check import GainCheck
+from odometry.modes.checks.travel_check import TravelCheck
 from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.travel_check import TravelCheck
 
 
 @dataclass(frozen=True)

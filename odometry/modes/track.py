@@ -10,6 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenTerrain, mode_chains
+from odometry.modes.checks.track_checks import contradictions
 from odometry.modes.gyroscope_bias import bias_is_open, bias_readings, gyroscope_trust
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_beliefs import ModeBeliefs, ModeEstimators
@@ -17,7 +18,6 @@ from odometry.modes.mode_set import ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.tempered_bank import independent_share, usable_measurements
-from odometry.modes.track_checks import contradictions
 from odometry.run import Run
 from odometry.windows.spans import within
 

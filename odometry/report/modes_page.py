@@ -11,7 +11,7 @@ from odometry.checks.findings.finding import CheckReport
 from odometry.modes.detection import confusion
 from odometry.modes.followed import BOUND, Followed
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.modes.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
+from odometry.modes.show.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
 from odometry.report.before_use import before_use
 from odometry.report.figure import save_figure
 from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page

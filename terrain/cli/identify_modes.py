@@ -76,8 +76,8 @@ def identify_modes(
     """
     import numpy as np
 
-    from odometry.modes.identify_traction import identify_traction_modes
-    from odometry.modes.identify_velocity import identify_velocity_modes
+    from odometry.modes.identify.identify_traction import identify_traction_modes
+    from odometry.modes.identify.identify_velocity import identify_velocity_modes
     from odometry.modes.mode_pairs import pairs
     from odometry.modes.mode_set import ModeSet
     from odometry.modes.mode_set_file import write_mode_set

@@ -104,8 +104,8 @@ def _one(
     feel: "FeelModel | None",
     span: "Span",
 ) -> None:
-    from odometry.modes.files import write_modes
-    from odometry.modes.words import in_short, sentences
+    from odometry.modes.show.files import write_modes
+    from odometry.modes.show.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about
     from terrain.cli.recordings import checks_made
@@ -133,8 +133,8 @@ def _several(
 ) -> None:
     """A folder for each run, and runs.csv; a run that fails is a row."""
     from odometry.errors import OdometryError
-    from odometry.modes.files import write_modes, write_runs
-    from odometry.modes.words import in_short, sentences
+    from odometry.modes.show.files import write_modes, write_runs
+    from odometry.modes.show.words import in_short, sentences
     from odometry.report.modes_page import write_modes_report
     from terrain.cli.outputs import about, folder_names
     from terrain.cli.recordings import checks_made

@@ -21,7 +21,7 @@ from odometry.feel.scores import class_weights
 from odometry.feel.table import stratified_folds
 from odometry.modes.answers import named_modes
 from odometry.modes.feel_source import feel_source, with_feel
-from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig

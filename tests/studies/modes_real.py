@@ -20,8 +20,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.detection import confusion
-from odometry.modes.identify_traction import identify_traction_modes
-from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.identify.identify_traction import identify_traction_modes
+from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.track import ModesConfig, ModeTrack, follow_modes, follow_signals
 from odometry.run import Run

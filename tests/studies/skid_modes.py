@@ -29,8 +29,8 @@ from tqdm import tqdm
 
 from odometry.modes.answers import named_modes
 from odometry.modes.detection import detections, false_switches
-from odometry.modes.identify_traction import identify_traction_modes
-from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.identify.identify_traction import identify_traction_modes
+from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet
 from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
 from odometry.run import Run

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from odometry.errors import RunFolderError
 from odometry.modes.bank_inputs import forward_speed_m_s, pose_signals, velocity_signals
-from odometry.modes.mode_windows import stretches_by_label
+from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.run import Robot, Run
 from odometry.table import Table
 

@@ -12,7 +12,7 @@ from odometry.feel.windows import STEPS
 from odometry.modes.answers import named_modes
 from odometry.modes.feel_source import FeelSource, feel_source, with_feel
 from odometry.modes.followed import followed
-from odometry.modes.identify_velocity import identify_velocity_modes
+from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.modes_config import ModesConfig

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from odometry.modes.camera_prior import PULLED_S, SeenTerrain
-from odometry.modes.files import content_of, write_modes, write_runs
 from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, Followed, followed
+from odometry.modes.show.files import content_of, write_modes, write_runs
+from odometry.modes.show.words import answer_words, sentences
 from odometry.modes.track import ModesConfig
-from odometry.modes.words import answer_words, sentences
 from tests.odometry.modes.mode_examples import run_of, track, traction_set, velocity_set
 
 HALVES = ["ice"] * 200 + ["tar"] * 200

@@ -7,11 +7,11 @@ import pytest
 
 from odometry.modes.answers import named_modes
 from odometry.modes.bank_inputs import Signals
+from odometry.modes.checks.track_checks import similar_modes
 from odometry.modes.mode_set import DWELL_S, UNDETERMINED, ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.response import BLOCK_S
 from odometry.modes.track import follow_signals
-from odometry.modes.track_checks import similar_modes
 from odometry.modes.velocity import VelocityModes
 
 STEP_S, RATE_HZ, SIGMA_RAD_S, LASTING_S = 0.02, 10.0, 0.05, 0.5

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import named_modes
-from odometry.modes.innovation_test import Innovations, mode_fit
-from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track_checks import (
+from odometry.modes.checks.track_checks import (
     LEAST_RAD_S,
     WINDOWS_S,
     contradicted_lately,
     turn_sums,
     turns_are_off,
 )
+from odometry.modes.innovation_test import Innovations, mode_fit
+from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.modes_config import ModesConfig
 from odometry.windows.spans import within
 from tests.odometry.modes.mode_examples import track
 

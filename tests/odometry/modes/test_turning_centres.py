@@ -6,7 +6,7 @@ import pytest
 from odometry.modes.measured_steps import step_windows
 from odometry.modes.traction import twists_of
 from odometry.modes.turning_centres import centres, mean_centre_m, pose_steps, predicted_steps
-from tests.odometry.modes.centre_examples import WIDTH, centre_run, centre_set
+from tests.odometry.modes.checks.centre_examples import WIDTH, centre_run, centre_set
 
 
 def found_of(run, ahead_m=0.0, until_s=np.inf):

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.modes.between_modes import BetweenModes
+from odometry.modes.checks.between_modes import BetweenModes
 from odometry.modes.followed import Followed
-from odometry.modes.gain_words import gain_words
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.show.gain_words import gain_words
 from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.modes.checks.place_drift import PART_S, PARTS, place_drifts
 from odometry.modes.innovation_test import Innovations
-from odometry.modes.place_drift import PART_S, PARTS, place_drifts
 from odometry.modes.track import follow_modes
 from tests.odometry.modes.mode_examples import run_of, traction_set
 

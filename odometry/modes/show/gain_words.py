@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.modes.gain_check import GainCheck
+from odometry.modes.checks.gain_check import GainCheck
 from odometry.modes.mode_track import ModeTrack
 
 

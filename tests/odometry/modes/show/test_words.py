@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.modes.camera_prior import SeenTerrain
-from odometry.modes.files import content_of
 from odometry.modes.followed import followed
 from odometry.modes.mode_set import NONE_OF_THESE
-from odometry.modes.words import in_short, percent, scale_word, sentences
+from odometry.modes.show.files import content_of
+from odometry.modes.show.words import in_short, percent, scale_word, sentences
 from tests.odometry.modes.mode_examples import run_of, velocity_set
 
 ICE = ["ice"] * 400

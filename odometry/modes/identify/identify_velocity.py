@@ -9,8 +9,8 @@ from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.independent_runs import check_no_run_twice
 from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
-from odometry.modes.held_out_turns import turn_errors
-from odometry.modes.mode_windows import stretches_by_label
+from odometry.modes.identify.held_out_turns import turn_errors
+from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.response import (
     Record,
     Response,

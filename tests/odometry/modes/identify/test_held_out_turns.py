@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.modes.held_out_turns import TURNED_S, turn_errors
-from odometry.modes.identify_velocity import OMEGA, identify_velocity_modes
+from odometry.modes.identify.held_out_turns import TURNED_S, turn_errors
+from odometry.modes.identify.identify_velocity import OMEGA, identify_velocity_modes
 from odometry.modes.response import Record, Response, fitted_response, simulated
 from tests.odometry.modes.mode_examples import run_of
 

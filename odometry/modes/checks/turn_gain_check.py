@@ -10,9 +10,9 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.between_modes import LEFT_BIAS_RAD_S
-from odometry.modes.held_out_gains import gain_sums
-from odometry.modes.held_out_turns import TURNED_S, turning_clock
+from odometry.modes.checks.between_modes import LEFT_BIAS_RAD_S
+from odometry.modes.identify.held_out_gains import gain_sums
+from odometry.modes.identify.held_out_turns import TURNED_S, turning_clock
 from odometry.modes.innovation_test import windowed
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.velocity import VelocityModes

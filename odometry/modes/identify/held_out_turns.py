@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.modes.held_out_centres import OUT
-from odometry.modes.held_out_gains import LEAST_RAD_S, PARTS, gain_sums, spread_and_power
+from odometry.modes.identify.held_out_centres import OUT
+from odometry.modes.identify.held_out_gains import LEAST_RAD_S, PARTS, gain_sums, spread_and_power
 from odometry.modes.response import Record, Response, gains_at, simulated
 
 # Of turning, the straights between turns left out: the first as long as a short turn, the second

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.modes.doubts import MOST_SCATTER
+from odometry.modes.checks.pose_scatter import LEAST_POSES, WINDOW_S, pose_scatter
 from odometry.modes.innovation_test import Innovations
-from odometry.modes.pose_scatter import LEAST_POSES, WINDOW_S, pose_scatter
+from odometry.modes.show.doubts import MOST_SCATTER
 from odometry.modes.track import follow_modes
 from tests.odometry.modes.mode_examples import run_of, traction_set
 

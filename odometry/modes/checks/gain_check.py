@@ -12,7 +12,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.held_out_gains import WINDOW_S, gain_sums
+from odometry.modes.identify.held_out_gains import WINDOW_S, gain_sums
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.traction import TractionModes
 

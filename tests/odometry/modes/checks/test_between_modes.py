@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import named_modes
-from odometry.modes.between_modes import WINDOW_S, between_modes
-from odometry.modes.doubts import doubts
-from odometry.modes.files import write_modes
+from odometry.modes.checks.between_modes import WINDOW_S, between_modes
 from odometry.modes.followed import followed
 from odometry.modes.mode_set import NONE_OF_THESE
+from odometry.modes.show.doubts import doubts
+from odometry.modes.show.files import write_modes
 from odometry.modes.track import follow_modes
 from odometry.modes.traction import LEFT_TURN
 from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set

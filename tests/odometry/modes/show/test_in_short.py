@@ -7,8 +7,8 @@ import pytest
 
 from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit
+from odometry.modes.show.words import in_short
 from odometry.modes.track import ModesConfig
-from odometry.modes.words import in_short
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 

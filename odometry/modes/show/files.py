@@ -13,12 +13,12 @@ from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
 from odometry.modes.detection import Detection, confusion
-from odometry.modes.doubts import doubts, not_checked
 from odometry.modes.followed import Followed
 from odometry.modes.innovation_test import ModeFit
 from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
 from odometry.modes.mode_track import ModeTrack
-from odometry.modes.words import answer_words
+from odometry.modes.show.doubts import doubts, not_checked
+from odometry.modes.show.words import answer_words
 from odometry.run import UNKNOWN
 
 NUMBERS = ("median_after_s", "right", "wrong", "undetermined", "wrong_of_all", "none_of_these")

@@ -8,7 +8,7 @@ from scipy.optimize import nnls
 
 from odometry.arrays import FloatArray
 from odometry.modes.bank_inputs import pose_signals
-from odometry.modes.held_out_gains import LEAST_WINDOWS, USUAL
+from odometry.modes.identify.held_out_gains import LEAST_WINDOWS, USUAL
 from odometry.modes.measured_steps import LEAST_STEPS, StepWindows, step_windows
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, TractionModes, twists_of
 from odometry.modes.turning_centres import (

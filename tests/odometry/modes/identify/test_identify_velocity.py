@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError, RunFolderError
-from odometry.modes.identify_velocity import CORRECTED_S, identify_velocity_modes
+from odometry.modes.identify.identify_velocity import CORRECTED_S, identify_velocity_modes
 from tests.odometry.modes.mode_drives import run_of_tables, velocities, velocity_run, wandering
 
 NAMES = ("ice", "mud", "tar")

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from odometry.modes.answers import named_modes
-from odometry.modes.gain_check import GainCheck, gain_check
-from odometry.modes.gain_words import gain_words
-from odometry.modes.held_out_gains import CLIP_RAD_S
+from odometry.modes.checks.gain_check import GainCheck, gain_check
+from odometry.modes.identify.held_out_gains import CLIP_RAD_S
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.mode_set_file import read_mode_set, write_mode_set
+from odometry.modes.show.gain_words import gain_words
 from odometry.modes.track import follow_modes
 from tests.odometry.modes.mode_examples import run_of, track, traction_set
 

@@ -6,9 +6,14 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.between_modes import between_modes
-from odometry.modes.centre_check import centre_check
-from odometry.modes.gain_check import gain_check
+from odometry.modes.checks.between_modes import between_modes
+from odometry.modes.checks.centre_check import centre_check
+from odometry.modes.checks.gain_check import gain_check
+from odometry.modes.checks.place_drift import place_drifts
+from odometry.modes.checks.pose_scatter import pose_scatter
+from odometry.modes.checks.travel_check import travel_check
+from odometry.modes.checks.turn_agreement import turns_disagree
+from odometry.modes.checks.turn_gain_check import turn_gain_check
 from odometry.modes.innovation_test import (
     LONG_CLIP,
     LONG_WINDOW_S,
@@ -18,12 +23,7 @@ from odometry.modes.innovation_test import (
 )
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.place_drift import place_drifts
-from odometry.modes.pose_scatter import pose_scatter
 from odometry.modes.response import BLOCK_S
-from odometry.modes.travel_check import travel_check
-from odometry.modes.turn_agreement import turns_disagree
-from odometry.modes.turn_gain_check import turn_gain_check
 from odometry.modes.velocity import VelocityModes
 
 WINDOWS_S = (6.0, 12.0)

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.doubts import doubts
-from odometry.modes.files import content_of
+from odometry.modes.checks.gain_check import GainCheck
+from odometry.modes.checks.travel_check import TravelCheck
 from odometry.modes.followed import Followed
-from odometry.modes.gain_check import GainCheck
 from odometry.modes.gyroscope_bias import GyroscopeTrust
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.travel_check import TravelCheck
-from odometry.modes.words import in_short, sentences
+from odometry.modes.show.doubts import doubts
+from odometry.modes.show.files import content_of
+from odometry.modes.show.words import in_short, sentences
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 SIZE, FROM = 11, 6  # stamps, half a second apart

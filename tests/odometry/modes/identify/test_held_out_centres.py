@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from odometry.modes.held_out_centres import LEAST_NOISE, centre_errors
-from odometry.modes.identify_traction import identify_traction_modes
-from tests.odometry.modes.centre_examples import centre_run, centre_set
+from odometry.modes.identify.held_out_centres import LEAST_NOISE, centre_errors
+from odometry.modes.identify.identify_traction import identify_traction_modes
+from tests.odometry.modes.checks.centre_examples import centre_run, centre_set
 
 
 def runs_of(*centres_m, **errors):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.modes.held_out_gains import gain_errors
+from odometry.modes.identify.held_out_gains import gain_errors
 from odometry.modes.yaw_rate_noise import YawRateStretch
 from tests.odometry.modes.mode_examples import traction_set
 

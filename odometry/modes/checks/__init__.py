@@ -1,0 +1,1 @@
+"""What contradicts the most probable mode, so that it is not named."""
