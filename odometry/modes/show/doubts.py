@@ -79,39 +79,45 @@ def doubts(followed: Followed) -> tuple[Doubt, ...]:
 
 def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
     """Turns and measured travel that contradict the most probable mode."""
+    track = followed.last_track
+    counts = undetermined & (track.probabilities.max(axis=1) >= followed.config.sure)
+    at_times = (
+        (
+            track.turns_are_off,
+            "the robot turns by more or by less than the most probable mode predicts",
+            "identify a mode for this terrain and load, and check the counts of both treads",
+        ),
+        (
+            track.contradicted,
+            "the motion contradicted the most probable mode, then or not long before,",
+            "identify a mode for this terrain, load or set of wheels, and check poses, "
+            "gyroscope and both treads",
+        ),
+        (
+            track.centre,
+            "the robot turns about another point than on the most probable mode",
+            "identify a mode for this terrain, load or set of wheels, and check the poses",
+        ),
+        (
+            track.headings_disagree,
+            "gyroscope and measured headings turn apart by more than a third of what "
+            "distinguishes the most probable mode from the next",
+            "check the gyroscope (range, scale, mounting, temperature) and the headings",
+        ),
+    )
+    found = []
+    for off, said, advice in at_times:
+        if off is not None:
+            share = _share(followed, off & counts)
+            found.append(Doubt(f"{said} for {round(100 * share)} % of the time", advice, share))
+    if track.between is not None and track.between.holds.any():
+        found.append(_between(followed, track.between))
+    return [*found, *_of_poses(followed), *_of_travel(followed)]
+
+
+def _of_poses(followed: Followed) -> list[Doubt]:
+    """Poses that scatter, and treads that turn while the robot does not."""
     track, found = followed.last_track, []
-    sure = track.probabilities.max(axis=1) >= followed.config.sure
-    if track.turns_are_off is not None:
-        off = track.turns_are_off & sure & undetermined
-        found.append(
-            Doubt(
-                "the robot turns by more or by less than the most probable mode predicts for "
-                f"{round(100 * _share(followed, off))} % of the time",
-                "identify a mode for this terrain and load, and check the counts of both treads",
-                _share(followed, off),
-            )
-        )
-    if track.contradicted is not None:
-        off = track.contradicted & sure & undetermined
-        found.append(
-            Doubt(
-                "the motion contradicted the most probable mode, then or not long before, for "
-                f"{round(100 * _share(followed, off))} % of the time",
-                "identify a mode for this terrain, load or set of wheels, and check poses, "
-                "gyroscope and both treads",
-                _share(followed, off),
-            )
-        )
-    if track.centre is not None:
-        off = track.centre & sure & undetermined
-        found.append(
-            Doubt(
-                "the robot turns about another point than on the most probable mode for "
-                f"{round(100 * _share(followed, off))} % of the time",
-                "identify a mode for this terrain, load or set of wheels, and check the poses",
-                _share(followed, off),
-            )
-        )
     if track.scatter is not None and (track.scatter > MOST_SCATTER).any():
         off = track.scatter > MOST_SCATTER
         found.append(
@@ -132,33 +138,27 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
                 _share(followed, track.blocked),
             )
         )
-    if track.headings_disagree is not None:
-        off = track.headings_disagree & sure & undetermined
-        found.append(
-            Doubt(
-                "gyroscope and measured headings turn apart by more than a third of what "
-                "distinguishes the most probable mode from the next for "
-                f"{round(100 * _share(followed, off))} % of the time",
-                "check the gyroscope (range, scale, mounting, temperature) and the headings",
-                _share(followed, off),
-            )
-        )
-    if track.between is not None and track.between.holds.any():
-        found.append(_between(followed, track.between))
-    if track.travel is not None:
-        most = track.probabilities.argmax(axis=1)
-        off = track.travel.off[np.arange(len(most)), most]
-        if off.any():
-            ratio = float(np.median(track.travel.ratio[off, most[off]]))
-            found.append(
-                Doubt(
-                    f"measured positions went {ratio:.2f} times as far as the most probable mode "
-                    f"says {_when(followed, off)}",
-                    "check the size and pressure of the tyres, the load, and the positions",
-                    _share(followed, off),
-                )
-            )
     return found
+
+
+def _of_travel(followed: Followed) -> list[Doubt]:
+    """Measured positions that went farther or less far than the most probable mode says."""
+    track = followed.last_track
+    if track.travel is None:
+        return []
+    most = track.probabilities.argmax(axis=1)
+    off = track.travel.off[np.arange(len(most)), most]
+    if not off.any():
+        return []
+    ratio = float(np.median(track.travel.ratio[off, most[off]]))
+    return [
+        Doubt(
+            f"measured positions went {ratio:.2f} times as far as the most probable mode "
+            f"says {_when(followed, off)}",
+            "check the size and pressure of the tyres, the load, and the positions",
+            _share(followed, off),
+        )
+    ]
 
 
 def _of_gain(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
