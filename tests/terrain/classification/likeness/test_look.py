@@ -1,5 +1,7 @@
 """The seven numbers of a look, against their definition by SciPy's Gaussians."""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
@@ -20,7 +22,7 @@ def defined(patch):
     """The look of a grey patch in float64, each Gaussian at full scale."""
     grey = patch.astype(float)
     levels = [grey, *(gaussian_filter(grey, s, mode="mirror", truncate=6) for s in SIGMAS_PX)]
-    octaves = [finer - coarser for finer, coarser in zip(levels, levels[1:], strict=False)]
+    octaves = [finer - coarser for finer, coarser in itertools.pairwise(levels)]
     spreads = np.log([octave.var() + 0.05 for octave in octaves])
     finest = np.abs(octaves[0])
     usual = np.log((np.median(finest) + 0.1) / (np.sqrt(np.mean(finest**2)) + 0.1))

@@ -72,6 +72,11 @@ def test_images_that_are_all_the_same_are_one_photograph(limits):
     assert limits.photographs(np.ones((9, NUMBERS))) == 1.0
 
 
+def test_images_that_differ_more_than_photographs_are_one_photograph_each(limits):
+    apart = 100.0 * np.arange(5)[:, None] * np.ones(NUMBERS)
+    assert limits.photographs(apart) == pytest.approx(5)
+
+
 def test_the_displacement_is_the_mahalanobis_distance_of_means_of_photographs():
     looks, differences, codes, groups = photographs(1)
     found = RunLimits.of(looks, differences, codes, groups)
