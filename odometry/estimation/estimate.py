@@ -164,11 +164,6 @@ class Estimate:
     doubt: Doubt | None = None
 
     @property
-    def rejected_in_row(self) -> int:
-        """How many poses failed the gate since the last that passed, to the filter's patience."""
-        return len(self.refused)
-
-    @property
     def certain(self) -> "Estimate":
         """With the covariance with which the filter goes on, see `doubt`."""
         return self if self.doubt is None else replace(self, covariance=self.doubt.covariance)

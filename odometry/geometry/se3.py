@@ -32,12 +32,6 @@ def between(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.asarray(inverse(first) @ second)
 
 
-def rotation_angle(rotation: FloatArray) -> FloatArray:
-    """Angle (...) in [0, pi] by which matrices (..., 3, 3) turn, exact near both ends."""
-    sine = np.linalg.norm(_skew_part(rotation), axis=-1)  # twice the sine, twice the cosine
-    return np.asarray(np.arctan2(sine, np.trace(rotation, axis1=-2, axis2=-1) - 1))
-
-
 def rotation_from_roll_pitch_yaw(angles: FloatArray) -> FloatArray:
     """Rotation matrix (..., 3, 3) of roll, pitch, yaw (..., 3)."""
     (sr, sp, sy), (cr, cp, cy) = (

@@ -8,6 +8,7 @@ plane comes in through `SpatialTrajectory.from_plane`.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.errors import TrajectoryError
@@ -114,7 +115,7 @@ def statistics(errors: FloatArray) -> Statistics:
 def _errors(left_over: FloatArray) -> PoseErrors:
     return PoseErrors(
         np.linalg.norm(left_over[:, :3, 3], axis=-1),
-        se3.rotation_angle(left_over[:, :3, :3]),
+        Rotation.from_matrix(left_over[:, :3, :3]).magnitude(),
         np.linalg.norm(left_over - np.eye(4), axis=(-2, -1)),
     )
 
