@@ -13,10 +13,8 @@ from odometry.geometry.angles import wrap_one
 
 STILL_M_S = 0.01  # a slower tread is stationary
 SETTLED_S = 1.0  # after that a robot that braked, and poses that are late, are stationary too
-REFERENCE, IN_A_ROW = (
-    3,
-    3,
-)  # poses for its place, and poses in a row that must show another
+REFERENCE = 3  # poses for its place
+IN_A_ROW = 3  # poses that must show another one
 MOVED_M, MOVED_RAD, SIGMAS = 0.15, 0.15, 4.0  # by the larger of these and of SIGMAS
 # resting robots of data/motion wander by at most 0.05 m in the poses
 

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from odometry.estimation.noise_scale import NoiseScale
+from odometry.estimation.watches.rest_watch import RestWatch, watched
 from odometry.estimation.watches.sensor_watch import ongoing
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
@@ -53,6 +55,14 @@ def test_a_push_is_followed_and_flagged(driven, rng, pushed_m):
     off = [np.hypot(*(e.mean - np.append(p, np.zeros(6)))[:2]) for e, p in
            zip(estimates[PUSH:], poses[PUSH:], strict=True)]  # fmt: skip
     assert max(off) < 0.45
+
+
+def test_a_robot_that_rolls_on_for_a_second_is_not_moved():
+    """Poses are looked at a second after the treads stopped: three give its place."""
+    watch = RestWatch(10.0, (np.zeros(9), np.eye(9)), NoiseScale())
+    for stamp_s, count in ((10.5, 0), (10.9, 0), (11.1, 1), (11.3, 2)):
+        watch, _ = watched(watch, np.array([stamp_s, 0.0, 0.0]), stamp_s, 1e-4 * np.eye(3))
+        assert len(watch.poses) == count
 
 
 def test_a_push_teaches_nothing_of_the_icrs(driven, rng):

@@ -113,3 +113,12 @@ def test_arrays_bring_back_the_same_answers(kind, samples, rng):
     np.testing.assert_array_equal(again.labels(queries, 7), model.labels(queries, 7))
     np.testing.assert_array_equal(again.distances(queries), model.distances(queries))
     np.testing.assert_array_equal(again.class_weights_, model.class_weights_)
+
+
+@pytest.mark.parametrize("cosines", [0, 50])
+def test_rescaled_by_its_own_scaler_a_model_is_what_it_was(cosines, samples, rng):
+    model = DiscriminantNeighbours(cosines).fit(*samples)
+    again = model.rescaled(model.scaler)
+    queries = rng.normal(size=(30, 8)) * 2
+    np.testing.assert_array_equal(again.labels(queries, 7), model.labels(queries, 7))
+    np.testing.assert_array_equal(again.distances(queries), model.distances(queries))
