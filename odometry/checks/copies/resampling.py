@@ -48,7 +48,7 @@ def _mean_to_next(
 
 
 def low_pass(sources: FloatArray, smoothed_s: float, period_s: float) -> FloatArray:
-    """Sources (S, P) through a low pass of first order that begins at rest with the first row."""
+    """Sources (S,) or (S, P) through a low pass of first order, at rest before the first row."""
     from scipy.signal import lfilter  # noqa: PLC0415 - slow to load
 
     if smoothed_s < period_s / 10:
