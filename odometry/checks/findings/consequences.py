@@ -99,7 +99,6 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"treads_swapped", "gyroscope_unrelated", "pose_mirrored", "treads_both_reversed"}
     | {"one_motion", "poses_unrelated"},
     "tread_offset": frozenset({"treads_unequal", "gyroscope_bias", "pose_jumps"}),
-    "uneven_stamps": frozenset({"odometry_gap", "clock_set"}),
     "tread_late": OF_OTHER_TIMES | {"yaw_jumps"},
     "treads_held": OF_OTHER_TIMES,
     "coarse_yaw": YAW

@@ -10,9 +10,7 @@ from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.windows.gaps import odometry_gaps
 
 OFTEN = 20
-MOST = 0.6  # share of the long holds that are gaps, from which rows come in bursts
 LIMIT = 0.3  # of the median change of a log of changes, that its smallest ones have at least
-AT_ONCE = 0.08  # share of the time between bursts of rows: a log of changes has ramps there
 FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is a log of changes
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
@@ -32,9 +30,6 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
     found = odometry_gaps(evidence.run)
     of_changes = len(found) < FEW * len(long) or (len(long) > OFTEN and _only_changes(evidence))
-    between = 1 - float(np.sum(lasts_s[long])) / evidence.duration_s
-    if len(long) > OFTEN and len(found) > MOST * len(long) and between < AT_ONCE:
-        yield _bursts(evidence, lasts_s[long])
     was_set = [_clock_was_set(evidence, span) for span in found.spans_s]
     clock, lost = (
         [span for span, was in zip(found.spans_s, was_set, strict=True) if was is kind]
@@ -69,18 +64,6 @@ def _only_changes(evidence: Evidence) -> bool:
     """Whether rows were recorded only where a speed changed by more than a limit."""
     changes = np.abs(np.diff(evidence.run.odometry.stack("v_left", "v_right"), axis=0)).max(axis=1)
     return bool(np.quantile(changes, 0.02) > LIMIT * np.median(changes))
-
-
-def _bursts(evidence: Evidence, lasts_s: FloatArray) -> Finding:
-    return Finding(
-        "uneven_stamps",
-        Level.WARNING,
-        f"rows of odometry.csv come in {len(lasts_s)} bursts, {lasts_s.max():.2f} s apart at most, "
-        f"while the usual period is {evidence.period_s:.3f} s",
-        "Stamps are those of arrival: rows were sent in bursts (buffered), not when they were "
-        "measured",
-        "Use the stamps of the sensor (header time), or spread the rows evenly",
-    )
 
 
 def _finding(

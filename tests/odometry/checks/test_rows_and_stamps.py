@@ -57,16 +57,16 @@ def test_stamps_of_another_rate_are_no_other_recording():
     assert "stamps were made up" in found.cause
 
 
-def test_rows_in_bursts_are_not_lost_as_a_fact():
+def test_rows_that_are_lost_between_bursts_are_a_gap():
     """Each second they come 1 ms apart, but for six seconds."""
     run = winding()
     t = np.ceil(AT_S[:2400] + 0.01) + 0.001 * (np.arange(2400) % 20)
     imu = table("imu.csv", t=AT_S[:2400], gyro_z=run.odometry["gyro_z"])
     bursts = table("odometry.csv", **{**run.odometry.columns, "t": t})
     bursts = bursts.rows(np.flatnonzero((t < 40) | (t > 45)))
-    assert gap(replace(run, odometry=bursts, imu=imu)).cause.startswith(
-        "Either rows come in bursts"
-    )
+    found = check_recording(replace(run, odometry=bursts, imu=imu)).findings
+    assert [finding.name for finding in found] == ["uneven_stamps", "odometry_gap"]
+    assert "no rows for 5.1 s" in found[1].seen
 
 
 def finding(name):
@@ -74,8 +74,11 @@ def finding(name):
 
 
 def test_what_is_wrong_with_stamps_or_axes_hides_what_follows():
-    """Bursts leave pauses, and treads that do not go with the turns have no known unit."""
-    for cause, follows in (("uneven_stamps", "clock_set"), ("gyroscope_unrelated", "tread_unit")):
+    """Rows of two clocks come in pairs; treads that do not go with turns have no known unit."""
+    for cause, follows in (
+        ("interleaved_rows", "uneven_stamps"),
+        ("gyroscope_unrelated", "tread_unit"),
+    ):
         assert without_consequences([finding(cause), finding(follows)]) == [finding(cause)]
 
 

@@ -1,0 +1,72 @@
+"""Rows that were sent in bursts and have the stamps of their arrival."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from odometry.arrays import FloatArray, IntArray
+from odometry.checks.findings.finding import Finding, Level
+from odometry.run import Run
+
+CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
+MOST_CLOSE = 0.4  # share of the rows that follow so close: in pairs half of them do
+OFTEN = 20  # bursts
+PIECE = 20  # bursts, over which rows are counted
+# Of the time between bursts, by which their last rows may be off even stamps: rows of a log of
+# changes are as many as there were changes, and off by more than one such time.
+STEADY = 0.3
+PAIRS = 2.2  # rows of a burst in the mean
+TWO_OF_EACH = "; or each moment has two rows, of the messages of either tread"
+WARNED_S = 0.1  # between bursts: with less, speeds are of nearly the right time
+
+
+def spread(run: Run) -> tuple[list[Finding], Run]:
+    """The finding where rows come many at once, and the run with these rows spread evenly.
+
+    Rows of bursts are as many as a steady sensor has measured since the burst before.
+    """
+    stamps_s = run.odometry.stamps_s
+    lasts_s = np.diff(stamps_s)
+    close = lasts_s < CLOSE * float(lasts_s.mean())
+    waits_s = lasts_s[~close]
+    if close.mean() < MOST_CLOSE or len(waits_s) < OFTEN or (lasts_s < 0).any():
+        return [], run
+    last = np.append(np.flatnonzero(~close), len(close))  # rows of their bursts
+    if not _steady(stamps_s, last):
+        return [], run
+    usual_s, in_each = float(np.median(waits_s)), len(stamps_s) / len(last)
+    finding = Finding(
+        "uneven_stamps",
+        Level.WARNING if usual_s > WARNED_S else Level.NOTE,
+        f"rows of odometry.csv come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
+        f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
+        "Stamps are those of arrival: rows were sent in bursts (buffered), not when they were "
+        "measured" + TWO_OF_EACH * (in_each < PAIRS),
+        "Use the stamps of the sensor (header time), or spread the rows evenly",
+    )
+    columns = {**run.odometry.columns, "t": _even_s(stamps_s, last)}
+    return [finding], replace(run, odometry=replace(run.odometry, columns=columns))
+
+
+def _steady(stamps_s: FloatArray, last: IntArray) -> bool:
+    """Whether the last rows of bursts have stamps that count the rows before them."""
+    off_s = []
+    for rows in np.split(last, np.arange(PIECE, len(last), PIECE)):
+        if len(rows) > PIECE // 2:
+            even_s = np.polynomial.Polynomial.fit(rows, stamps_s[rows], 1)(rows)
+            off_s.append(float(np.std(stamps_s[rows] - even_s)))
+    return float(np.median(off_s)) < STEADY * float(np.diff(stamps_s[last]).mean())
+
+
+def _even_s(stamps_s: FloatArray, last: IntArray) -> FloatArray:
+    """Rows of a burst spread evenly since the one before, no farther apart than rows usually are.
+
+    Where rows are lost between two bursts the gap stays.
+    """
+    rows = np.arange(len(stamps_s))
+    period_s = float(np.median(np.diff(stamps_s[last]) / np.diff(last)))
+    own = last[np.searchsorted(last, rows)]  # the last row of the burst
+    at_most_s = stamps_s[own] - period_s * (own - rows)
+    after = rows > last[0]
+    since_s = np.where(after, np.interp(rows, last, stamps_s[last]), at_most_s)
+    return np.asarray(np.maximum(since_s, at_most_s))

@@ -1,0 +1,78 @@
+"""Rows of odometry.csv that come many at once, with the stamps of their arrival."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.checks.findings.finding import Level
+from odometry.checks.recording import check_recording
+from odometry.checks.stamps.bursts import spread
+from tests.odometry.checks.drives import drive
+from tests.odometry.checks.faulty import SENSORS
+
+
+@pytest.fixture(scope="module")
+def driven():
+    """Two minutes of turns to both sides, 20 rows a second."""
+    at_s = 0.05 * np.arange(2400)
+    speed = 0.8 + 0.4 * np.sin(at_s / 5)
+    return drive(speed, 0.7 * np.sin(at_s / 2.3))
+
+
+def stamped(run, stamps_s, rows=slice(None)):
+    columns = {name: np.asarray(values)[rows] for name, values in run.odometry.columns.items()}
+    return replace(run, odometry=replace(run.odometry, columns={**columns, "t": stamps_s}))
+
+
+def in_bursts(run, fewest, most):
+    """Bursts of so many rows, half a millisecond apart, from the stamp of their last row on."""
+    rng, stamps_s = np.random.default_rng(fewest), run.odometry.stamps_s
+    last = np.cumsum(rng.integers(fewest, most + 1, len(stamps_s)))
+    last = np.append(last[last < len(stamps_s) - 1], len(stamps_s) - 1)
+    rows = np.arange(len(stamps_s))
+    burst = np.searchsorted(last, rows)
+    since = np.concatenate([[-1], last])[burst]
+    return stamped(run, stamps_s[last[burst]] + 5e-4 * (rows - since - 1))
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize(("fewest", "most"), [(2, 2), (2, 4), (4, 7), (8, 20)])
+def test_bursts_are_the_only_finding(driven, fewest, most, sensors):
+    (found,) = check_recording(in_bursts(SENSORS[sensors](driven), fewest, most)).findings
+    assert found.name == "uneven_stamps"
+    assert found.level is (Level.NOTE if most == 2 else Level.WARNING)
+    in_each = float(found.seen.split("bursts of ")[1].split()[0])
+    assert in_each == pytest.approx((fewest + most) / 2, rel=0.05)
+    assert ("of the messages of either tread" in found.cause) == (most == 2)
+
+
+def test_rows_that_are_spread_have_nearly_their_own_stamps(driven):
+    found, run = spread(in_bursts(driven, 3, 6))
+    assert len(found) == 1
+    off_s = run.odometry.stamps_s - driven.odometry.stamps_s
+    assert np.abs(off_s).max() < 0.01  # of 0.3 s between bursts
+
+
+def test_equal_stamps_of_a_burst_are_spread_too(driven):
+    whole_s = np.repeat(driven.odometry.stamps_s[4::5], 5)
+    found, run = spread(stamped(driven, whole_s))
+    assert len(found) == 1
+    assert run.odometry.stamps_s == pytest.approx(driven.odometry.stamps_s)
+
+
+@pytest.mark.parametrize("limit_m_s", [0.02, 0.1, 0.2])
+def test_a_log_of_changes_has_no_bursts(driven, limit_m_s):
+    """Rows close together where the robot speeds up, and none for seconds elsewhere."""
+    steps = np.floor(driven.odometry.stack("v_left", "v_right") / limit_m_s)
+    steps[np.arange(len(steps)) % 200 < 150] = 0.0  # rests between
+    rows = np.append(True, (np.diff(steps, axis=0) != 0).any(axis=1))
+    log = stamped(driven, driven.odometry.stamps_s[rows], rows)
+    assert spread(log) == ([], log)
+
+
+def test_even_and_shaken_stamps_are_left(driven, rng):
+    stamps_s = driven.odometry.stamps_s
+    for each in (stamps_s, stamps_s + rng.uniform(0, 0.045, len(stamps_s))):
+        run = stamped(driven, each)
+        assert spread(run)[1] is run
