@@ -21,31 +21,45 @@ WARNED_S = 0.1  # between bursts: with less, speeds are of nearly the right time
 
 
 def spread(run: Run) -> tuple[list[Finding], Run]:
-    """The finding where rows come many at once, and the run with these rows spread evenly.
+    """A finding for each file whose rows come many at once, and the run with them spread evenly.
 
     Rows of bursts are as many as a steady sensor has measured since the burst before.
     """
-    stamps_s = run.odometry.stamps_s
+    found = []
+    for name in ("odometry", "imu"):
+        table = getattr(run, name)
+        last = None if table is None else _last_of_bursts(table.stamps_s)
+        if last is not None:
+            found.append(_finding(f"{name}.csv", table.stamps_s, last))
+            columns = {**table.columns, "t": _even_s(table.stamps_s, last)}
+            run = replace(run, **{name: replace(table, columns=columns)})
+    return found, run
+
+
+def _last_of_bursts(stamps_s: FloatArray) -> IntArray | None:
+    """Numbers of the last rows of all bursts; None where rows do not come in bursts."""
     lasts_s = np.diff(stamps_s)
+    if len(lasts_s) < OFTEN or (lasts_s < 0).any():
+        return None
     close = lasts_s < CLOSE * float(lasts_s.mean())
-    waits_s = lasts_s[~close]
-    if close.mean() < MOST_CLOSE or len(waits_s) < OFTEN or (lasts_s < 0).any():
-        return [], run
-    last = np.append(np.flatnonzero(~close), len(close))  # rows of their bursts
-    if not _steady(stamps_s, last):
-        return [], run
-    usual_s, in_each = float(np.median(waits_s)), len(stamps_s) / len(last)
-    finding = Finding(
+    last = np.append(np.flatnonzero(~close), len(close))
+    if close.mean() < MOST_CLOSE or len(last) <= OFTEN or not _steady(stamps_s, last):
+        return None
+    return np.asarray(last)
+
+
+def _finding(file: str, stamps_s: FloatArray, last: IntArray) -> Finding:
+    waits_s, in_each = np.diff(stamps_s)[last[:-1]], len(stamps_s) / len(last)
+    usual_s = float(np.median(waits_s))
+    return Finding(
         "uneven_stamps",
         Level.WARNING if usual_s > WARNED_S else Level.NOTE,
-        f"rows of odometry.csv come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
+        f"rows of {file} come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
         f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
         "Stamps are those of arrival: rows were sent in bursts (buffered), not when they were "
-        "measured" + TWO_OF_EACH * (in_each < PAIRS),
+        "measured" + TWO_OF_EACH * (file == "odometry.csv" and in_each < PAIRS),
         "Use the stamps of the sensor (header time), or spread the rows evenly",
     )
-    columns = {**run.odometry.columns, "t": _even_s(stamps_s, last)}
-    return [finding], replace(run, odometry=replace(run.odometry, columns=columns))
 
 
 def _steady(stamps_s: FloatArray, last: IntArray) -> bool:

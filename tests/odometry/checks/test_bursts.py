@@ -1,4 +1,4 @@
-"""Rows of odometry.csv that come many at once, with the stamps of their arrival."""
+"""Rows that come many at once, with the stamps of their arrival."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.bursts import spread
-from tests.odometry.checks.drives import drive
+from tests.odometry.checks.drives import drive, table
 from tests.odometry.checks.faulty import SENSORS
 
 
@@ -59,6 +59,17 @@ def test_equal_stamps_of_a_burst_are_spread_too(driven):
     found, run = spread(stamped(driven, whole_s))
     assert len(found) == 1
     assert run.odometry.stamps_s == pytest.approx(driven.odometry.stamps_s)
+
+
+def test_rows_of_an_imu_are_spread_as_well(driven):
+    turned = SENSORS["gyroscope and poses"](driven)
+    rates = turned.odometry["gyro_z"]
+    late = in_bursts(turned, 5, 8)
+    imu = table("imu.csv", t=late.odometry.stamps_s, gyro_z=rates)
+    columns = {name: turned.odometry[name] for name in ("t", "v_left", "v_right")}
+    found, run = spread(replace(turned, odometry=table("odometry.csv", **columns), imu=imu))
+    assert [finding.seen.split(" come")[0] for finding in found] == ["rows of imu.csv"]
+    assert run.imu.stamps_s == pytest.approx(turned.odometry.stamps_s, abs=0.01)
 
 
 @pytest.mark.parametrize("limit_m_s", [0.02, 0.1, 0.2])
