@@ -15,9 +15,13 @@ PIECE = 20  # bursts, over which rows are counted
 # Of the time between bursts, by which their last rows may be off even stamps: rows of a log of
 # changes are as many as there were changes, and off by more than one such time.
 STEADY = 0.3
+MOVING = 0.3  # of the way from one burst to the next of a fast robot
+AS_FAR = (
+    0.15  # of that way, that a pose of a burst lies ahead of the one before; noise makes it less
+)
 PAIRS = 2.2  # rows of a burst in the mean
 TWO_OF_EACH = "; or each moment has two rows, of the messages of either tread"
-WARNED_S = 0.1  # between bursts: with less, speeds are of nearly the right time
+WARNED_S = 0.1  # between bursts: with less, values are of nearly the right time
 
 
 def spread(run: Run) -> tuple[list[Finding], Run]:
@@ -26,10 +30,10 @@ def spread(run: Run) -> tuple[list[Finding], Run]:
     Rows of bursts are as many as a steady sensor has measured since the burst before.
     """
     found = []
-    for name in ("odometry", "imu"):
+    for name in ("odometry", "imu", "pose"):
         table = getattr(run, name)
         last = None if table is None else _last_of_bursts(table.stamps_s)
-        if last is not None:
+        if last is not None and (name != "pose" or _go_on(table.stack("x", "y"), last)):
             found.append(_finding(f"{name}.csv", table.stamps_s, last))
             columns = {**table.columns, "t": _even_s(table.stamps_s, last)}
             run = replace(run, **{name: replace(table, columns=columns)})
@@ -52,7 +56,7 @@ def _finding(file: str, stamps_s: FloatArray, last: IntArray) -> Finding:
     waits_s, in_each = np.diff(stamps_s)[last[:-1]], len(stamps_s) / len(last)
     usual_s = float(np.median(waits_s))
     return Finding(
-        "uneven_stamps",
+        "pose_bursts" if file == "pose.csv" else "uneven_stamps",
         Level.WARNING if usual_s > WARNED_S else Level.NOTE,
         f"rows of {file} come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
         f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
@@ -70,6 +74,22 @@ def _steady(stamps_s: FloatArray, last: IntArray) -> bool:
             even_s = np.polynomial.Polynomial.fit(rows, stamps_s[rows], 1)(rows)
             off_s.append(float(np.std(stamps_s[rows] - even_s)))
     return float(np.median(off_s)) < STEADY * float(np.diff(stamps_s[last]).mean())
+
+
+def _go_on(places_m: FloatArray, last: IntArray) -> bool:
+    """Whether places (M, 2) of one burst follow each other as those of two bursts do.
+
+    Places of two sensors, which come together each time, lie side by side.
+    """
+    steps_m = np.diff(places_m, axis=0)
+    after = last[1:-1][np.diff(last[:-1]) > 1]  # steps from one burst to the next
+    to_next_m, within_m = steps_m[after], steps_m[after - 1]
+    sizes_m = np.hypot(*to_next_m.T)
+    moving = sizes_m > MOVING * np.nanquantile(sizes_m, 0.9)
+    if moving.sum() < OFTEN:
+        return False
+    shares = np.sum(within_m * to_next_m, axis=1)[moving] / sizes_m[moving] ** 2
+    return bool(np.nanmedian(shares) > AS_FAR)
 
 
 def _even_s(stamps_s: FloatArray, last: IntArray) -> FloatArray:

@@ -122,15 +122,19 @@ def stamp_on_arrival(recording, rng):
     return recording.with_columns("odometry", t=arrival + 1e-4 * (np.arange(len(t)) % bunch))
 
 
-def stamp_few_on_arrival(recording, rng):
+def stamp_few_on_arrival(recording, rng, file="odometry"):
     """As a serial port or a network hands on what it has: 2 to 7 rows, milliseconds apart."""
-    t = recording["odometry"]["t"]
+    t = recording[file]["t"]
     most = int(rng.integers(2, 8))
     sizes = rng.integers(max(most - 2, 2), most + 1, len(t))
     last = np.minimum(np.cumsum(sizes), len(t)) - 1
     burst = np.searchsorted(last, np.arange(len(t)))
     place = np.arange(len(t)) - np.concatenate([[-1], last])[burst] - 1
-    return recording.with_columns("odometry", t=t[last[burst]] + rng.uniform(1e-4, 1e-3) * place)
+    return recording.with_columns(file, t=t[last[burst]] + rng.uniform(1e-4, 1e-3) * place)
+
+
+def stamp_few_poses_on_arrival(recording, rng):
+    return stamp_few_on_arrival(recording, rng, "pose")
 
 
 def write_dates(recording, rng):
@@ -176,6 +180,9 @@ FAULTS = (
           ("burst", "bunch", "arriv", "batch", "buffer", "receiv"), stamp_on_arrival),
     Fault("stamped_few_on_arrival", "note", "Rows come two to seven at once, with such stamps.",
           ("burst", "bunch", "arriv", "batch", "buffer", "receiv"), stamp_few_on_arrival),
+    Fault("poses_stamped_few_on_arrival", "note", "Poses come two to seven at once, so stamped.",
+          ("burst", "bunch", "arriv", "batch", "buffer", "receiv"), stamp_few_poses_on_arrival,
+          POSE),
     Fault("stamps_are_dates", "refused", "Stamps are written as dates, not as seconds.",
           ("date", "second", "number", "text", "numeric"), write_dates),
 )  # fmt: skip

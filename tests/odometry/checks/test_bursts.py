@@ -20,20 +20,21 @@ def driven():
     return drive(speed, 0.7 * np.sin(at_s / 2.3))
 
 
-def stamped(run, stamps_s, rows=slice(None)):
-    columns = {name: np.asarray(values)[rows] for name, values in run.odometry.columns.items()}
-    return replace(run, odometry=replace(run.odometry, columns={**columns, "t": stamps_s}))
+def stamped(run, stamps_s, rows=slice(None), name="odometry"):
+    of = getattr(run, name)
+    columns = {column: np.asarray(values)[rows] for column, values in of.columns.items()}
+    return replace(run, **{name: replace(of, columns={**columns, "t": stamps_s})})
 
 
-def in_bursts(run, fewest, most):
+def in_bursts(run, fewest, most, name="odometry"):
     """Bursts of so many rows, half a millisecond apart, from the stamp of their last row on."""
-    rng, stamps_s = np.random.default_rng(fewest), run.odometry.stamps_s
+    rng, stamps_s = np.random.default_rng(fewest), getattr(run, name).stamps_s
     last = np.cumsum(rng.integers(fewest, most + 1, len(stamps_s)))
     last = np.append(last[last < len(stamps_s) - 1], len(stamps_s) - 1)
     rows = np.arange(len(stamps_s))
     burst = np.searchsorted(last, rows)
     since = np.concatenate([[-1], last])[burst]
-    return stamped(run, stamps_s[last[burst]] + 5e-4 * (rows - since - 1))
+    return stamped(run, stamps_s[last[burst]] + 5e-4 * (rows - since - 1), name=name)
 
 
 @pytest.mark.parametrize("sensors", SENSORS)
@@ -70,6 +71,24 @@ def test_rows_of_an_imu_are_spread_as_well(driven):
     found, run = spread(replace(turned, odometry=table("odometry.csv", **columns), imu=imu))
     assert [finding.seen.split(" come")[0] for finding in found] == ["rows of imu.csv"]
     assert run.imu.stamps_s == pytest.approx(turned.odometry.stamps_s, abs=0.01)
+
+
+@pytest.mark.parametrize("sensors", ["gyroscope and poses", "poses"])
+@pytest.mark.parametrize(("fewest", "most"), [(2, 2), (3, 5), (6, 9)])
+def test_poses_that_come_at_once_are_the_only_finding(driven, fewest, most, sensors):
+    (found,) = check_recording(in_bursts(SENSORS[sensors](driven), fewest, most, "pose")).findings
+    assert found.name == "pose_bursts"
+    assert "rows of pose.csv come in" in found.seen
+
+
+@pytest.mark.parametrize("apart_m", [0.0, 0.5])
+def test_poses_of_two_sensors_that_come_together_are_left(driven, apart_m):
+    each = driven.pose
+    twice = {name: np.repeat(np.asarray(values), 2) for name, values in each.columns.items()}
+    twice["t"][1::2] += 2e-3
+    twice["x"][1::2] += apart_m
+    run = replace(driven, pose=replace(each, columns=twice))
+    assert spread(run)[1] is run
 
 
 @pytest.mark.parametrize("limit_m_s", [0.02, 0.1, 0.2])
