@@ -11,6 +11,7 @@ from odometry.checks.copies.copied_columns import NO_GYROSCOPES
 from odometry.checks.copies.copied_turns import without_gyroscope
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
+from odometry.checks.stamps.bursts import in_bursts
 from odometry.errors import RunFolderError
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
@@ -102,6 +103,7 @@ def _findings(run: Run, classifier: "TerrainClassifier | None") -> Iterator[Find
     yield from damaged(images)
     yield from frozen(run, images)
     yield from outside_of_odometry(run)
+    yield from in_bursts("images.csv", run.images.stamps_s)
     yield from image_gaps(run)
     if not isinstance(table, Mapping):
         yield Finding(

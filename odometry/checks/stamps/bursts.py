@@ -1,5 +1,6 @@
 """Rows that were sent in bursts and have the stamps of their arrival."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +20,13 @@ MOVING = 0.3  # of the way from one burst to the next of a fast robot
 AS_FAR = (
     0.15  # of that way, that a pose of a burst lies ahead of the one before; noise makes it less
 )
+NAMES = {"pose.csv": "pose_bursts", "images.csv": "image_bursts"}
 PAIRS = 2.2  # rows of a burst in the mean
-TWO_OF_EACH = "; or each moment has two rows, of the messages of either tread"
+ARRIVAL = (
+    "stamps are those of arrival: rows were sent in bursts (buffered), not when they were measured"
+)
+SEVERAL = ", or the camera took several images at a time"
+TWO_OF_EACH = ", or each moment has two rows, of the messages of either tread"
 WARNED_S = 0.1  # between bursts: with less, values are of nearly the right time
 
 
@@ -40,6 +46,13 @@ def spread(run: Run) -> tuple[list[Finding], Run]:
     return found, run
 
 
+def in_bursts(file: str, stamps_s: FloatArray) -> Iterator[Finding]:
+    """The finding where rows of a file come many at once."""
+    last = _last_of_bursts(stamps_s)
+    if last is not None:
+        yield _finding(file, stamps_s, last)
+
+
 def _last_of_bursts(stamps_s: FloatArray) -> IntArray | None:
     """Numbers of the last rows of all bursts; None where rows do not come in bursts."""
     lasts_s = np.diff(stamps_s)
@@ -55,13 +68,15 @@ def _last_of_bursts(stamps_s: FloatArray) -> IntArray | None:
 def _finding(file: str, stamps_s: FloatArray, last: IntArray) -> Finding:
     waits_s, in_each = np.diff(stamps_s)[last[:-1]], len(stamps_s) / len(last)
     usual_s = float(np.median(waits_s))
+    other = SEVERAL if file == "images.csv" else ""
+    if file == "odometry.csv" and in_each < PAIRS:
+        other = TWO_OF_EACH
     return Finding(
-        "pose_bursts" if file == "pose.csv" else "uneven_stamps",
+        NAMES.get(file, "uneven_stamps"),
         Level.WARNING if usual_s > WARNED_S else Level.NOTE,
         f"rows of {file} come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
         f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
-        "Stamps are those of arrival: rows were sent in bursts (buffered), not when they were "
-        "measured" + TWO_OF_EACH * (file == "odometry.csv" and in_each < PAIRS),
+        f"Either {ARRIVAL}{other}" if other else ARRIVAL.capitalize(),
         "Use the stamps of the sensor (header time), or spread the rows evenly",
     )
 

@@ -58,3 +58,17 @@ def test_a_robot_that_stands_leaves_no_gap(drive):
 
 def test_images_each_few_metres_have_no_gaps(drive):
     assert list(image_gaps(of_rows(drive, np.arange(0, len(drive.images), 12)))) == []
+
+
+def test_images_that_come_at_once_are_named_and_no_mount_is_judged_by_them(drive):
+    """Three at a time, ten milliseconds apart."""
+    stamps_s = drive.images.stamps_s
+    rows = np.arange(len(stamps_s))
+    last = np.minimum(rows // 3 * 3 + 2, len(rows) - 1)
+    columns = {**drive.images.columns, "t": stamps_s[last] + 0.01 * (rows % 3)}
+    report = terrain.check_run(replace(drive, images=replace(drive.images, columns=columns)))
+    (finding,) = report.at(Level.WARNING)
+    assert finding.name == "image_bursts"
+    assert "rows of images.csv come in" in finding.seen
+    assert finding.cause.startswith("Either stamps are those of arrival")
+    assert "the motion of the treads: see the warnings" in " ".join(report.skipped)
