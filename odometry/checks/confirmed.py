@@ -27,7 +27,9 @@ HALF = 0.5  # of the recording, that parts are at least: with more cuts it is co
 MOST_PARTS = 6  # the longest ones are compared
 # Sensors of different times seem to slip, to jump and to be far from the centre; one side of
 # another scale seems to scale the way; treads seem to stand where their scale is another elsewhere;
-# one side that loses samples seems to have another scale; yaw of another unit seems to jump.
+# one side that loses samples seems to have another scale; yaw of another unit seems to jump,
+# a yaw rate to have little to do with turns that are small; a sensor far from the centre seems to
+# go too far where the robot turns to one side.
 TRIED_ALONE = frozenset(
     {
         "pose_late",
@@ -40,7 +42,7 @@ TRIED_ALONE = frozenset(
         "treads_are_commands",
     }
     | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
-    | {"yaw_in_degrees"}
+    | {"yaw_in_degrees", "gyroscope_unit", "far_sensor"}
 )
 
 Found = Callable[[Evidence], Iterator[Finding]]

@@ -25,6 +25,7 @@ from odometry.checks.poses.compass_error import bent
 from odometry.checks.poses.course import course
 from odometry.checks.poses.pose_values import pose_values
 from odometry.checks.poses.poses import pose_outages, poses
+from odometry.checks.poses.poses_stay import poses_stay
 from odometry.checks.poses.position_axes import position_axes
 from odometry.checks.poses.smoothed_poses import smoothed_poses
 from odometry.checks.poses.yaw_drift import yaw_drifts
@@ -149,7 +150,9 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
         confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
-    findings = in_order([*wrapped, *copies, *without_consequences([*late, *confirmed_ones])])
+        said = [*wrapped, *copies, *without_consequences([*late, *confirmed_ones])]
+        stays = list(poses_stay(evidence, said))
+    findings = in_order([*said, *stays])
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 
 

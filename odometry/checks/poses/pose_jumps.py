@@ -135,16 +135,24 @@ def _drift(evidence: Evidence, at_s: float, farthest_m: float, usual_m: float) -
 
 
 def _slip_episodes(evidence: Evidence, at_s: FloatArray, first_m: float) -> Finding:
+    return slip_episode(
+        f"the treads drive on while the poses hardly move ({counted(len(at_s), 'time')}, first by "
+        f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
+        moments(evidence, at_s),
+    )
+
+
+def slip_episode(seen: str, spans_s: tuple[tuple[float, float], ...]) -> Finding:
+    """A note of treads that drive on while the poses stay, in run time [s]."""
     return Finding(
         "slip_episodes",
         Level.NOTE,
-        f"the treads drive on while the poses hardly move ({counted(len(at_s), 'time')}, first by "
-        f"{first_m:.2f} m at {evidence.run_time_s(at_s[0]):.1f} s)",
+        seen,
         "The robot is stuck or slips while its wheels spin, or poses are frozen for a moment, or "
         "the treads read too much there",
         "Decide by what the robot drove on; run, identify and compare learn nothing where poses "
         "surely stay; else cut with --from and --to",
-        moments(evidence, at_s),
+        spans_s,
     )
 
 
@@ -155,9 +163,10 @@ def _lost_odometry(evidence: Evidence, at_s: FloatArray, farthest_m: float) -> F
         f"poses move by up to {farthest_m:.2f} m while both treads read zero "
         f"({counted(len(at_s), 'time')}, first at {evidence.run_time_s(at_s[0]):.1f} s)",
         "Either odometry is lost: the log writes zeros (a motor driver or bus that stopped); or "
-        "the robot was pushed, carried or slid, or poses jump, or their stamps are off (late, or "
-        "of a clock that was set or has another rate), or these are commands and it coasts, or "
-        "they are held between two readings, or two recordings are joined there",
+        "the robot was pushed, carried or slid, or poses jump or wander (reflected signals), or "
+        "their stamps are off (late, or of a clock that was set or has another rate), or these are "
+        "commands and it coasts, or they are held between two readings, or two recordings are "
+        "joined there",
         "Cut the recording with --from and --to",
         moments(evidence, at_s),
     )

@@ -20,6 +20,7 @@ BEFORE, CLOSER = 40, 0.9  # rows before a gap, and their period as a share of th
 CLOSER_ROWS = "; or their stamps are wrong: rows before it come closer together than elsewhere"
 BURST = 0.3  # of the mean time between rows, that the usual one has in bursts, or in changes
 MISSING = 0.5  # of the rows that gaps lack, which the whole file lacks at least
+AS_LONG = 0.2  # of the gaps, that odometry.csv may end later or earlier than the poses and these
 STOOD = 0.3  # share of the motion at the held speed below which the robot stood: the clock was set
 
 
@@ -108,8 +109,22 @@ def _why_lost(evidence: Evidence, lost_s: list[FloatArray]) -> str:
             "clock that ran slow and was set); or rows of odometry.csv are lost, and others came "
             "faster"
         )
+    later_s, whole_s = _ends_later_s(evidence), sum(float(e - b) for b, e in lost_s)
+    if abs(later_s - whole_s) < AS_LONG * whole_s:
+        return (
+            "Either the clock of odometry.csv was set ahead there: the file ends "
+            f"{later_s:.1f} s after the poses; or its rows are lost, and poses at the end"
+        )
     closer = any(_is_closer_before(evidence, begin_s) for begin_s, _ in lost_s)
     return LOST + CLOSER_ROWS * closer
+
+
+def _ends_later_s(evidence: Evidence) -> float:
+    """By how much odometry.csv ends later than the measured poses; 0 without them."""
+    if evidence.run.pose is None or evidence.positions_measured is None:
+        return 0.0
+    measured_s = evidence.run.pose.stamps_s[evidence.positions_measured]
+    return float(evidence.stamps_s[-1] - measured_s[-1])
 
 
 def _in_bursts(evidence: Evidence) -> bool:

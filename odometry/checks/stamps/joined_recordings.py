@@ -66,7 +66,7 @@ def _steps_at_rest(evidence: Evidence) -> Iterator[tuple[float, float]]:
     positions, stamps_s = pose.stack("x", "y"), pose.stamps_s
     far_m = np.hypot(*np.diff(positions, axis=0).T)
     scale = max(evidence.metres_per_metre or 1.0, 1.0)
-    reach_m = LEAST_M + FARTHER * scale * np.diff(evidence.travel_m(stamps_s))
+    reach_m = LEAST_M + FARTHER * scale * _travel_since_new_m(evidence, stamps_s, positions)
     odd = np.flatnonzero(far_m > reach_m + NOISE * evidence.position_sigma_m)
     for row in odd[(odd >= BESIDE - 1) & (odd < len(far_m) - BESIDE + 1)]:
         before, after = (
@@ -79,6 +79,19 @@ def _steps_at_rest(evidence: Evidence) -> Iterator[tuple[float, float]]:
         if _stands(evidence, stamps_s[row : row + 2]):
             begin_s, end_s = map(evidence.run_time_s, stamps_s[row : row + 2].tolist())
             yield begin_s, end_s
+
+
+def _travel_since_new_m(
+    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray
+) -> FloatArray:
+    """Tread travel (M - 1,) up to each position but the first, since that before it was new.
+
+    A reference that held its position goes on where the robot is by then.
+    """
+    is_new = np.append(True, (np.diff(positions, axis=0) != 0).any(axis=1))
+    new_since = np.maximum.accumulate(np.where(is_new, np.arange(len(positions)), 0))
+    travel_m = evidence.travel_m(stamps_s)
+    return np.asarray(travel_m[1:] - travel_m[new_since[:-1]])
 
 
 def _stands(evidence: Evidence, span_s: FloatArray) -> bool:

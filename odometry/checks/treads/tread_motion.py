@@ -66,7 +66,6 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
     """
     speeds, stamps_s = evidence.speeds_m_s, evidence.stamps_s
     inside = within(stamps_s, np.array(odd))
-    poses_alone = evidence.yaw_rate is None
     if inside.sum() * evidence.period_s < HALF * sum(np.ptp(span) for span in odd):
         return (
             "Either rows of odometry.csv are lost, or their stamps are wrong there (a clock that "
@@ -77,8 +76,7 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
         return (
             f"Either {LOST}; or the robot was pushed, carried or slid, or stamps are off (a clock "
             "that was set), or both treads moved too slowly to be read (a dead zone)"
-            + "; or the yaw is wrong there: no gyroscope says that the robot turned"
-            * poses_alone
+            + _poses_wrong(evidence, odd)
         )
     moving = (np.abs(speeds[1:]).max(axis=1) > 0) & ~inside[1:]
     repeated = (speeds[1:] == speeds[:-1]).all(axis=1)
@@ -94,15 +92,33 @@ def _cause(evidence: Evidence, odd: list[FloatArray]) -> str:
     )
 
 
+def _poses_wrong(evidence: Evidence, odd: list[FloatArray]) -> str:
+    """Words where the poses may be wrong instead: nothing else says that the robot moved."""
+    if evidence.yaw_rate is None:
+        return "; or the yaw is wrong there: no gyroscope says that the robot turned"
+    if any(_turns_differently(evidence, span) for span in odd):
+        return ""
+    return (
+        "; or positions wander there (reflected signals, a map or a receiver that drifts): no turn "
+        "says that the robot moved"
+    )
+
+
 def moves_differently(evidence: Evidence, span: FloatArray) -> bool:
     """Whether the measured motion in a span changes, or differs from that of the treads.
 
     Gyroscope and poses must agree on it where both measure turns: else one of these is at fault.
     """
-    differ = [_differs(of, span) for of in _targets(evidence, span)]
-    turns, ways = (differ[:-1], differ[-1:]) if evidence.yaw_measured else (differ, [])
-    said = [differs for differs in turns if differs is not None]
-    return (any(said) and all(said)) or any(ways)
+    ways = list(_targets(evidence, span))[-1:] if evidence.yaw_measured else []
+    return _turns_differently(evidence, span) or any(_differs(of, span) for of in ways)
+
+
+def _turns_differently(evidence: Evidence, span: FloatArray) -> bool:
+    """The same of the turns alone."""
+    turns = list(_targets(evidence, span))
+    differ = [_differs(of, span) for of in (turns[:-1] if evidence.yaw_measured else turns)]
+    said = [differs for differs in differ if differs is not None]
+    return any(said) and all(said)
 
 
 def _differs(of: Target, span: FloatArray) -> bool | None:

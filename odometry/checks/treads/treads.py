@@ -31,10 +31,10 @@ def treads(evidence: Evidence) -> Iterator[Finding]:
 
 def _coarse(evidence: Evidence) -> Iterator[Finding]:
     """Readings that come in large steps, from one to the next and back."""
-    step = min(filter(None, map(step_of, evidence.speeds_m_s.T)), default=0.0)
+    step = _step(evidence)
     if step < COARSE / 4 * evidence.fastest_m_s or step == 0:
         return
-    much = step > COARSE * evidence.fastest_m_s
+    much = is_coarse(evidence)
     yield Finding(
         "coarse_speeds",
         Level.WARNING if much else Level.NOTE,
@@ -45,6 +45,16 @@ def _coarse(evidence: Evidence) -> Iterator[Finding]:
         if much
         else "Nothing to do where slow motion does not matter",
     )
+
+
+def is_coarse(evidence: Evidence) -> bool:
+    """Whether the steps are large against the ordinary fastest speed."""
+    return _step(evidence) > COARSE * evidence.fastest_m_s
+
+
+def _step(evidence: Evidence) -> float:
+    """The smaller step of both treads [m/s]; 0 where there is none."""
+    return min(filter(None, map(step_of, evidence.speeds_m_s.T)), default=0.0)
 
 
 def step_of(values: FloatArray) -> float | None:

@@ -8,6 +8,7 @@ from odometry.arrays import BoolArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.treads.treads import is_coarse
 
 LEAST_WINDOWS = 6
 ORDINARY = (0.5, 1.5)  # metres moved for each of tread travel; else the unit is another one
@@ -24,6 +25,7 @@ SILENT = 0.5
 # three dead zones of one tread; of 11 real drives of robots that also drive straight, made
 # unsigned, one of both is 0.9 and less.
 ALL = 0.95
+COARSE_STEPS = "; or speeds come in steps so coarse that both read the same"
 FORWARD_TOO = 0.1  # share of the windows; else the yaw is off by half a turn
 
 
@@ -49,6 +51,8 @@ def unsigned(evidence: Evidence) -> Iterator[Finding]:
         others = (
             "; or both columns hold one speed there (the mean of the treads, or one of them twice):"
             f" they are the same number in each row of {same} of these windows"
+            + COARSE_STEPS
+            * is_coarse(evidence)
         )
     elif always and not backwards:
         either = "Either tread"

@@ -10,6 +10,7 @@ from odometry.checks.units.unit_tables import matching, tread_units
 # Robots that were measured turn as if 1.0 to 3.1 times as wide, on snow 10 times as wide.
 WIDTH = (0.9, 4.0)
 ORDINARY_WIDTH = 1.8
+FIRM = (0.75, 1.05)  # metres that robots were measured to move for each one of their treads
 TIGHT = 0.9  # correlation from which a factor is a unit and no slip
 VERY_TIGHT = 0.85  # share of the turns explained from which a factor of turns alone may be a unit
 HALF = 0.5  # share of the turns explained from which they have a width
@@ -91,7 +92,7 @@ def across(evidence: Evidence, forward: float | None, width: float, tight: bool)
         )
     unit = " (mm?)" if width < 0.01 else _tenfold(width / ORDINARY_WIDTH)
     possible = (body is None or body_fits) and MIXED * WIDTH[0] < width < WIDTH[1] / MIXED
-    others = _others(evidence, forward, narrow=width < WIDTH[0]) if possible else ""
+    others = _others(evidence, forward, width) if possible else ""
     if width < WIDTH[0] and not possible:
         others = ", or the treads differ by too little: speeds clipped at a limit, a mean of both"
     return Finding(
@@ -104,13 +105,25 @@ def across(evidence: Evidence, forward: float | None, width: float, tight: bool)
     )
 
 
-def _others(evidence: Evidence, forward: float | None, *, narrow: bool) -> str:
+def _others(evidence: Evidence, forward: float | None, width: float) -> str:
     """What else makes turns too large, or too small, for their treads by a factor."""
+    narrow = width < WIDTH[0]
     mixed = ", or the column of each tread holds a part of the other one (cross-talk, a mean)"
     size, more = ("small", "much") if narrow else ("large", "little")
     scaled = f"tread speeds{' and positions' if forward is not None else ''} are too {size}"
+    if forward is not None and _is_off_as_well(forward, width):
+        scaled = (
+            f"tread speeds are too {size} (a unit, a wheel radius): the robot moves {forward:.3g} "
+            "m for each m of tread travel, too"
+        )
     alone = "" if evidence.yaw_measured else f", or the gyroscope reads too {more}"
     return f"{mixed if narrow else ''}, or {scaled}{alone}: these cannot be distinguished"
+
+
+def _is_off_as_well(forward: float, width: float) -> bool:
+    """Whether one scale of the treads makes both ordinary, of a way that firm terrain has not."""
+    holds = FIRM[0] <= forward <= FIRM[1]
+    return not holds and WIDTH[0] <= width * forward <= WIDTH[1]
 
 
 def _tenfold(factor: float) -> str:

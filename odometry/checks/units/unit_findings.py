@@ -136,14 +136,23 @@ def tread_unit(
     )
 
 
-def slip_along(seen: str, tight: bool) -> Finding:
-    """A factor along the way that slip explains as well."""
+def slip_along(seen: str, forward: float, tight: bool) -> Finding:
+    """A factor along the way that slip explains as well; where it is above 1 none does."""
+    if forward > 1:
+        return Finding(
+            "scale",
+            Level.WARNING,
+            f"{seen}; the factor is not known to be constant",
+            "Either treads or positions have a wrong scale, or the sensor is far from the centre "
+            "(a lever arm): no slip makes a robot go farther than its treads",
+            "Compare a straight stretch with a tape measure, and state the place of the sensor",
+        )
     return Finding(
         "slip",
         Level.WARNING,
         f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
         "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
-        "scale of treads or positions: these cannot be distinguished",
+        "scale of treads (a unit, a wheel radius) or positions: these cannot be distinguished",
         "Where it truly slipped nothing can be corrected; what is learned holds on it alone",
     )
 

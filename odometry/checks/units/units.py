@@ -53,7 +53,7 @@ NEARLY = 0.9  # of the ordinary way: farther off, the unit may be another one
 MOST, CLOSELY = 0.7, 0.99  # share of the windows, and their correlation, that are no outliers
 STRAIGHT_TO_ALL = 1.2  # ratio of the ways for each metre of the treads; real robots have less
 SLIPPERY_WIDTH = 2.1  # in track widths; where robots slipped along the way they turned as if 2.3
-ONE_AXIS_STRETCHED = 1.6  # degrees of longitude taken for those of latitude
+ONE_AXIS_STRETCHED = 2.0  # degrees of longitude taken for those of latitude, up to 60 degrees
 
 
 def units(evidence: Evidence) -> Iterator[Finding]:
@@ -216,7 +216,7 @@ def _unit_or_slip(
     if not tight and width is not None and WIDTH[0] <= width < SLIPPERY_WIDTH:
         return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
-        return slip_along(seen, tight)
+        return slip_along(seen, forward, tight)
     return scale_along(seen, forward, radius_known)
 
 

@@ -216,7 +216,7 @@ FAULTS = (
     Fault("camera_of_another_height", "warning", "The mount's height is wrong by a factor.",
           ("high", "height"), wrong_height, IMAGES),
     Fault("camera_of_another_yaw", "warning", "The mount's yaw is off by 20 degrees and more.",
-          ("yaw", "looks", "side", "direction"), wrong_yaw, IMAGES),
+          ("yaw", "looks", "points", "side", "direction"), wrong_yaw, IMAGES),
     Fault("camera_of_another_pitch", "warning", "The mount's pitch is off by 6 to 11 degrees.",
           ("pitch",), wrong_pitch, IMAGES),
     Fault("camera_of_another_focal_length", "warning", "The focal length is wrong by a factor.",

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from tests.blind.faults.bases import other_segments
-from tests.blind.faults.fault import Fault, gyro_bias, held, pick_stretch
+from tests.blind.faults.fault import Fault, gyro_bias, held, integral, pick_stretch
 from tests.blind.faults.recordings import read_table
 from tests.blind.faults.references import posed, wheel_travel
 
@@ -73,14 +73,32 @@ def interpolate(recording, rng):
 
 def stick_in_place(recording, rng):
     """The wheels spin for 5 to 20 s and the robot stands: gyroscope and poses say so."""
-    pose, table = recording["pose"], recording["odometry"]
-    length_s = rng.uniform(5, 20)
 
     def drives(mask):
         return wheel_travel(recording, mask) > 3
 
+    return _stand(recording, rng, rng.uniform(5, 20), drives)
+
+
+def stick_in_turn(recording, rng):
+    """The wheels turn on the spot for 2 to 4 s and the robot stands, as both others say."""
+    table, width = recording["odometry"], recording.robot["track_width"]
+    ahead = integral(table["t"], (table["v_left"] + table["v_right"]) / 2)
+    turned = integral(table["t"], (table["v_right"] - table["v_left"]) / width)
+
+    def pivots(mask):
+        ends = recording["pose"]["t"][mask][[0, -1]]
+        way, turn = (float(np.diff(np.interp(ends, table["t"], of))[0]) for of in (ahead, turned))
+        return abs(turn) > 1.5 and abs(way) < 0.3 * width * abs(turn)
+
+    return _stand(recording, rng, rng.uniform(2, 4), pivots)
+
+
+def _stand(recording, rng, length_s, suits):
+    """The robot stands for so long, and its treads go on."""
+    pose, table = recording["pose"], recording["odometry"]
     whole = pose["t"][-1] - pose["t"][0]
-    mask = pick_stretch(rng, pose["t"], (length_s / whole, length_s / whole), (0.1, 0.8), drives)
+    mask = pick_stretch(rng, pose["t"], (length_s / whole, length_s / whole), (0.1, 0.8), suits)
     first, last = np.flatnonzero(mask)[[0, -1]]
     here, there = ({n: pose[n][row] for n in ("x", "y", "yaw")} for row in (first, last))
     turn = here["yaw"] - there["yaw"]
@@ -122,5 +140,7 @@ FAULTS = (
            "not of the same", "unrelated"), of_another_run, GOOD, ("odometry_of_another_run",)),
     Fault("robot_stuck_while_wheels_spin", "note", "All wheels spin, the robot stands.",
           ("slip", "spin", "stuck", "traction", "stand"), stick_in_place, GOOD),
+    Fault("robot_stuck_in_a_turn", "note", "All wheels turn on the spot, the robot stands.",
+          ("slip", "spin", "stuck", "traction", "stand", "blocked"), stick_in_turn, GOOD),
 )
 # fmt: on

@@ -92,6 +92,17 @@ def varied(seed=0):
     return drive(np.where(rest, 0.0, speed), np.where(rest, 0.0, turn), seed=seed)
 
 
+AT_REST_S = (100.0, 112.0)
+
+
+def pausing(seed=0):
+    """A drive that stands still for a while in its midst."""
+    at_s = 0.05 * np.arange(4000)
+    goes = (at_s < AT_REST_S[0]) | (at_s > AT_REST_S[1])
+    turn = 0.35 * np.sin(at_s / 5.7) + 0.3 * np.sin(at_s / 1.7) + 0.1
+    return drive((0.7 + 0.3 * np.sin(at_s / 4)) * goes, turn * goes, seed=seed)
+
+
 def driven(seed=0):
     """Speeds and turns that change all the time, so that both have a delay."""
     rng = np.random.default_rng(seed)

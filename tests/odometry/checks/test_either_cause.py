@@ -7,11 +7,21 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.stamps.gaps import gaps
 from odometry.checks.treads.slow_speeds import or_slow
+from odometry.checks.treads.tread_motion import tread_motion
 from odometry.checks.treads.unsigned import unsigned
 from tests.odometry.checks.answers import warnings
-from tests.odometry.checks.drives import PERIOD_S, drive, table, turning_all_round, winding
-from tests.odometry.checks.faulty import put, treads, width, yaw
+from tests.odometry.checks.drives import (
+    AT_REST_S,
+    PERIOD_S,
+    drive,
+    pausing,
+    table,
+    turning_all_round,
+    winding,
+)
+from tests.odometry.checks.faulty import gyroscope, positions, put, treads, width, yaw
 
 AT_S = PERIOD_S * np.arange(4000)
 
@@ -105,6 +115,39 @@ def test_equal_numbers_may_be_one_speed_and_no_lost_signs():
     assert plain.cause.startswith("Tread speeds have lost their sign")
     assert equal.cause.startswith("Either")
     assert "both columns hold one speed" in equal.cause
+
+
+def test_equal_numbers_may_be_those_of_coarse_steps():
+    def coarse(left, right):
+        return tuple(np.round(speed / 0.344) * 0.344 for speed in (left, right))
+
+    found = next(unsigned(Evidence(treads(spinning_without_signs(), coarse))))
+    equal = next(unsigned(Evidence(treads(spinning_without_signs(), lambda left, _: (left, left)))))
+    assert "steps so coarse that both read the same" in found.cause
+    assert "coarse" not in equal.cause
+
+
+def test_positions_alone_that_move_while_the_robot_stands_may_wander():
+    run = pausing()
+    aside = 8 * np.exp(-0.5 * ((run.pose.stamps_s - np.mean(AT_REST_S)) / 3) ** 2)
+    found = next(tread_motion(Evidence(positions(run, lambda x, y: (x + aside, y)))))
+    assert found.name == "treads_frozen"
+    assert "or positions wander there" in found.cause
+    begin_s, end_s = AT_REST_S
+    turned = yaw(run, lambda yaw: yaw + 0.5 * np.clip(run.pose.stamps_s, begin_s, end_s))
+    rests = (begin_s < AT_S) & (end_s > AT_S)
+    found = next(tread_motion(Evidence(gyroscope(turned, lambda rate: rate + 0.5 * rests))))
+    assert "wander" not in found.cause
+
+
+def test_a_gap_as_long_as_odometry_outlasts_the_poses_may_be_of_a_clock():
+    run = turning_all_round()
+    ahead = put(run, "odometry", t=np.where(AT_S > 120, AT_S + 60, AT_S))
+    (found,) = gaps(Evidence(ahead))
+    assert found.cause.startswith("Either the clock of odometry.csv was set ahead there: the file")
+    kept = (AT_S < 120) | (AT_S > 180)
+    (lost,) = gaps(Evidence(replace(run, odometry=run.odometry.rows(np.flatnonzero(kept)))))
+    assert lost.cause.startswith("Rows of odometry.csv are lost")
 
 
 def test_turns_to_one_side_alone_may_be_of_a_tread_that_reads_too_little():
