@@ -27,9 +27,7 @@ HALF = 0.5  # of the recording, that parts are at least: with more cuts it is co
 MOST_PARTS = 6  # the longest ones are compared
 # Sensors of different times seem to slip, to jump and to be far from the centre; one side of
 # another scale seems to scale the way; treads seem to stand where their scale is another elsewhere;
-# one side that loses samples seems to have another scale; yaw of another unit seems to jump,
-# a yaw rate to have little to do with turns that are small; a sensor far from the centre seems to
-# go too far where the robot turns to one side.
+# one side that loses samples seems to have another scale; yaw of another unit seems to jump.
 TRIED_ALONE = frozenset(
     {
         "pose_late",
@@ -42,8 +40,14 @@ TRIED_ALONE = frozenset(
         "treads_are_commands",
     }
     | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
-    | {"yaw_in_degrees", "gyroscope_unit", "far_sensor"}
+    | {"yaw_in_degrees"}
 )
+# The same where nothing is warned of but what these make: a sensor far from the centre goes too far
+# where the robot turns to one side; of a yaw rate in another unit small turns seem large.
+TRIED_AGAINST = {
+    "far_sensor": frozenset({"scale", "slip"}),
+    "gyroscope_unit": frozenset({"gyroscope_unrelated"}),
+}
 
 Found = Callable[[Evidence], Iterator[Finding]]
 
@@ -54,7 +58,13 @@ def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Fin
     Its consequences vanish with it.
     """
     warnings = _warnings(found)
-    causes = [cause for cause in warnings if cause.name in TRIED_ALONE]
+    names = {cause.name for cause in warnings}
+    causes = [
+        cause
+        for cause in warnings
+        if cause.name in TRIED_ALONE
+        or names - {cause.name} <= TRIED_AGAINST.get(cause.name, frozenset())
+    ]
     only = _explains_all(evidence, causes, find) if len(warnings) > 1 else None
     return list(found) if only is None else [only, *_notes(found)]
 

@@ -9,6 +9,8 @@ from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.sides import sides
 from odometry.checks.units.unit_findings import gyroscope_unit, slip_along
+from odometry.checks.units.unit_tables import POSITION_UNITS, matching
+from odometry.checks.units.units import ONE_AXIS_STRETCHED
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import (
     AT_REST_S,
@@ -69,13 +71,13 @@ def test_a_twist_of_a_robot_that_pulls_to_one_side_is_one_by_the_way():
     assert [one.name for one in sides(Evidence(winding(4000)))] == []
 
 
-@pytest.mark.parametrize("north", [40.0, 66.0])
-def test_degrees_of_a_map_are_said_far_from_the_equator_as_well(north):
-    """A degree to the east is shorter; the drive goes to all sides."""
-    degree_m = 111_320.0
-    wide = 1 / np.cos(np.radians(north))
-    run = positions(winding(4000), lambda x, y: (x * wide / degree_m, y / degree_m))
-    assert first(run).name == "latitude_longitude"
+@pytest.mark.parametrize(("metres", "words"), [(0.9, "degrees"), (1.7, "degrees"), (2.1, "")])
+def test_degrees_that_are_longer_in_the_north_are_still_degrees(metres, words):
+    """A drive along both axes, of which one is stretched by up to 2 at 60 degrees north."""
+    forward = metres / 111_320.0
+    found = matching(POSITION_UNITS, lambda unit: forward / unit.factor, most=ONE_AXIS_STRETCHED)
+    assert words in ("" if found is None else found.words)
+    assert (found is None) == (not words)
 
 
 def test_no_slip_makes_a_robot_go_farther_than_its_treads():
