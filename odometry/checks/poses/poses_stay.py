@@ -6,7 +6,6 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.findings.warned import TRUE_SLIP
 from odometry.checks.poses.pose_jumps import slip_episode
 from odometry.checks.treads.tread_motion import times
 from odometry.errors import WindowError
@@ -21,11 +20,12 @@ SAID = frozenset({"slip_episodes", "turn_blocked"})
 
 
 def poses_stay(evidence: Evidence, found: Sequence[Finding]) -> Iterator[Finding]:
-    """A note of each stretch of which nothing is `found` yet, and nothing else is at fault.
+    """A note of each stretch of which nothing is `found` yet, where nothing is warned of.
 
-    Where treads, stamps or poses are wrong all along, poses seem to stay as well.
+    Where treads, stamps or poses are wrong all along, poses seem to stay as well, and of scaled
+    positions those that move seem to.
     """
-    if any(f.level is not Level.NOTE and f.name not in TRUE_SLIP for f in found):
+    if any(finding.level is not Level.NOTE for finding in found):
         return
     said_s = [span for finding in found if finding.name in SAID for span in finding.spans_s]
     spans_s = [span for span in _stretches(evidence) if not _is_beside(span, said_s)]
