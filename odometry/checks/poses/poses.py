@@ -5,7 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.heading import across_m, along_m
 from odometry.checks.evidence.relation import pieces, relation
+from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import moved
 from odometry.checks.poses.course import OFF_RAD
@@ -82,8 +84,10 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     """A sensor far from the centre swings sideways, or forwards, with every turn."""
     m = evidence.motion
     turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad
-    sideways = relation(evidence.sideways_m, turn)
-    forward = relation(evidence.forward_m, m.mean_m, turn)
+    across, along = evidence.sideways_m, evidence.forward_m
+    if (yaw := swinging_sensor(evidence)) is not None:
+        across, along = across_m(m, yaw), along_m(m, yaw)
+    sideways, forward = relation(across, turn), relation(along, m.mean_m, turn)
     if sideways is None or forward is None:
         return
     x_m, y_m = sideways.slope, -float(forward.coefficients[1])
@@ -92,7 +96,7 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
     limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
     place = 0 if far == abs(x_m) else 1
     columns = (turn,) if place == 0 else (m.mean_m, turn)
-    fits = pieces((evidence.sideways_m, evidence.forward_m)[place], *columns)
+    fits = pieces((across, along)[place], *columns)
     size = (x_m, -y_m)[place]
     swings = [of.coefficients[place] / size for of in fits if of.certain(place)]
     if far > limit_m and len(swings) > 1 and min(swings) > LASTING:

@@ -8,6 +8,7 @@ from odometry.checks.evidence.carried import carried_along
 from odometry.checks.evidence.constancy import one_side, uneven_gyroscope, uneven_way
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.relation import Relation, pieces
+from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import times
 from odometry.checks.treads.proportion import holds_the_mean
@@ -67,7 +68,7 @@ def units(evidence: Evidence) -> Iterator[Finding]:
     high *= 1 + _longer_by_noise(evidence)
     if forward is not None and not low <= forward <= high:
         yield _along(evidence, forward, forward_tight, width)
-    elif (straight := beyond_treads(evidence)) is not None:
+    elif (straight := beyond_treads(evidence)) and swinging_sensor(evidence) is None:
         yield _on_straight_lines(evidence, straight, forward)
     narrow = width is not None and width < WIDTH[0]
     if narrow and (otherwise := holds_the_mean(evidence) or turns_less(evidence)):
@@ -85,6 +86,8 @@ def units(evidence: Evidence) -> Iterator[Finding]:
 
 def _forward_factor(evidence: Evidence) -> tuple[float | None, bool]:
     """Measured displacement per mean tread travel, and whether it is constant."""
+    if swinging_sensor(evidence) is not None:
+        return None, False
     found = evidence.forward_by_mean
     if found is not None and found.certain():
         return abs(found.slope), found.correlation > TIGHT

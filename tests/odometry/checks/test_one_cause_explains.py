@@ -1,5 +1,7 @@
 """A cause that explains what others seemed to be is named, and these are not."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,19 @@ def test_a_sensor_far_from_the_centre_makes_no_scale():
     yaw = run.pose["yaw"]
     far = positions(run, lambda x, y: (x + 2 * np.sin(yaw), y - 2 * np.cos(yaw)))
     assert warnings(far) == ["far_sensor"]
+
+
+@pytest.mark.parametrize("ahead_m", [-2.4, 1.2])
+def test_a_sensor_that_swings_farther_than_the_robot_drives_is_found_where_it_is(ahead_m):
+    """The course of a robot that pivots is that of the swing, across its yaw."""
+    pivots = np.sin(AT_S / 3) + 0.5 * np.sin(AT_S / 1.3)
+    run = drive(0.12 + 0.08 * np.sin(AT_S / 5), 0.5 * pivots, sigma_m=0.005)
+    yaw = run.pose["yaw"]
+    far = positions(run, lambda x, y: (x + ahead_m * np.cos(yaw), y + ahead_m * np.sin(yaw)))
+    (found,) = check_recording(far).at(Level.WARNING)
+    assert found.name == "far_sensor"
+    ((x, _, _),) = re.findall(r"pose = \[([-.0-9]+), ([-.0-9]+), ([-.0-9]+)\]", found.remedy)
+    assert float(x) == pytest.approx(ahead_m, abs=0.1)
 
 
 def test_a_yaw_rate_whose_unit_explains_all_is_not_unrelated():
