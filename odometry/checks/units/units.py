@@ -21,12 +21,11 @@ from odometry.checks.units.effective_width import (
     across,
     width_factor,
 )
+from odometry.checks.units.factor_along import farther_along, scale_along, slip_along
 from odometry.checks.units.unit_findings import (
     beyond_treads,
     gyroscope_unit,
     imported_unit,
-    scale_along,
-    slip_along,
     too_fast,
     track_against_body,
     tread_unit,
@@ -219,7 +218,7 @@ def _unit_or_slip(
     if not tight and width is not None and WIDTH[0] <= width < SLIPPERY_WIDTH:
         return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
-        return slip_along(seen, forward, tight)
+        return farther_along(seen) if forward > 1 else slip_along(seen, tight)
     return scale_along(seen, forward, radius_known)
 
 

@@ -10,7 +10,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.sides import sides
-from odometry.checks.units.unit_findings import gyroscope_unit, slip_along
+from odometry.checks.units.factor_along import farther_along, slip_along
+from odometry.checks.units.unit_findings import gyroscope_unit
 from odometry.checks.units.unit_tables import POSITION_UNITS, matching
 from odometry.checks.units.units import ONE_AXIS_STRETCHED
 from tests.odometry.checks.answers import warnings
@@ -96,7 +97,7 @@ def test_degrees_that_are_longer_in_the_north_are_still_degrees(metres, words):
 
 
 def test_no_slip_makes_a_robot_go_farther_than_its_treads():
-    assert slip_along("seen", 0.4, tight=False).name == "slip"
-    farther = slip_along("seen", 1.4, tight=False)
+    assert slip_along("seen", tight=False).name == "slip"
+    farther = farther_along("seen")
     assert farther.name == "scale"
     assert "far from the centre" in farther.cause
