@@ -6,7 +6,7 @@ from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.filter_start import REINITIALISED
-from odometry.estimation.watches.sensor_watch import ongoing
+from odometry.estimation.watches.ongoing import ongoing
 from odometry.gyroscope_bias import bias_events
 from odometry.run import Run
 

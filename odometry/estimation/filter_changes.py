@@ -129,8 +129,7 @@ def bias_followed(
 
 
 def _with_bias(watch: SensorWatch, bias: BiasWatch) -> SensorWatch:
-    treads, gyroscope, poses, gap_since_s, hold, _, rest, frozen, slip, stuck = watch
-    return SensorWatch(treads, gyroscope, poses, gap_since_s, hold, bias, rest, frozen, slip, stuck)
+    return watch._replace(bias=bias)
 
 
 def _another_bias(

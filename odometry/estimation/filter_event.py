@@ -24,3 +24,9 @@ class FilterEvent:
     end_s: float
     text: str
     values: tuple[float, ...] = ()
+
+
+def gap_event(begin_s: float, end_s: float) -> FilterEvent:
+    """The event of a gap of odometry."""
+    text = "odometry has a gap: the speed before it was held, and the ICRs were not updated"
+    return FilterEvent("odometry_gap", begin_s, end_s, text)

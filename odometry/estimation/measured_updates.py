@@ -135,8 +135,8 @@ class PoseUpdate:
         accepted = squared <= gate
         refused = () if accepted else (*estimate.refused, measured.residual)
         # an outlier does not count for the noise; refused poses that agree show that it is larger
-        if self.config.adapt_rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
-            rate = self.config.adapt_rate
+        rate = 0.0 if _are_contrary(estimate) else self.config.adapt_rate
+        if rate > 0 and (accepted or agree(refused[-2:], self.covariance)):
             scale = adapted(scale, measured.residual, weighed, squared, rate)
         if self.config.detect_jumps and size == 3:
             recent = (*recent, min(squared, gate))[-self.config.jump_window :]
@@ -166,6 +166,10 @@ class PoseUpdate:
         covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
         covariance[OF_TERRAIN, OF_TERRAIN] = self._reset_variances
         return belief[0], covariance
+
+
+def _are_contrary(estimate: Estimate) -> bool:
+    return estimate.watch is not None and estimate.watch.is_contrary
 
 
 def _others(estimate: Estimate) -> Others:
@@ -202,6 +206,7 @@ class VelocityUpdate:
         speeds, step_s = estimate.tread_speeds_m_s, frame.stamp_s - estimate.stamp_s
         known = step_s > 0 and not frame.in_gap and not math.isnan(speeds[0] + speeds[1])
         known &= estimate.watch is None or not estimate.watch.is_frozen
+        known &= not _are_contrary(estimate)
         if frame.velocity is None or not known:
             return belief
         variances = velocity_variances(

@@ -13,7 +13,7 @@ from odometry.estimation.kalman import bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate
 from odometry.estimation.noise_scale import huber_factor, tread_variance
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
-from odometry.estimation.watches import sensor_watch, tread_watch
+from odometry.estimation.watches import contrary_treads, sensor_watch, tread_watch
 from odometry.estimation.watches.frozen_treads import restored
 from odometry.estimation.watches.sensor_watch import Events, SensorWatch
 from odometry.frames import Frame
@@ -159,7 +159,12 @@ class Prediction:
             newly_stuck = watch.treads.stuck >= 0 and not was_stuck
             if watch.frozen is not None and watch.is_frozen and not seen.watch.is_frozen:
                 belief = restored(watch.frozen, frame.stamp_s, GAP_DENSITY[0])
-            belief = tread_watch.parted(belief, watch.treads, newly_stuck=newly_stuck)
+            if watch.contrary is not None and watch.is_contrary:
+                newly_found = not seen.watch.is_contrary
+                belief = contrary_treads.parted(belief, watch.contrary, newly_found=newly_found)
+                watch = watch._replace(slip=None, stuck=None)
+            else:
+                belief = tread_watch.parted(belief, watch.treads, newly_stuck=newly_stuck)
         return Predicted(belief, yaw_rate, seen.pose, speeds, watch, events)
 
     def _moved(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
@@ -176,10 +181,13 @@ class Prediction:
             added_speeds=estimate.added_speeds_m_s,
             added_twist=estimate.added_twist,
         )
+        slip_scale = estimate.scale.slip
+        if estimate.watch is not None and estimate.watch.is_contrary:
+            slip_scale = max(slip_scale, contrary_treads.SLIP)
         half_noise = self._noise.over_half(
             speeds,
             step_s,
-            slip_scale=estimate.scale.slip,
+            slip_scale=slip_scale,
             by_gyroscope=by_gyroscope,
             in_gap=frame.in_gap or (estimate.watch is not None and estimate.watch.is_frozen),
             bias_walk=1.0 if estimate.watch is None else estimate.watch.bias.walk,

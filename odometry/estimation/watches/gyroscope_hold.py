@@ -113,6 +113,11 @@ def watched(
     )
 
 
+def repeats(hold: GyroscopeHold | None, begin_s: float) -> bool:
+    """Whether the gyroscope may hold its value at a stamp: it repeats for half of `HELD_S`."""
+    return hold is not None and begin_s - hold.same_since_s > HELD_S / 2
+
+
 def _begun(
     yaw_rate: float, begin_s: float, belief: Gaussian, terrain: str, changing_s: float
 ) -> GyroscopeHold:

@@ -4,18 +4,18 @@ import math
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
-from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.filter_event import FilterEvent, gap_event
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.watches import (
+    contrary_treads,
     frozen_treads,
     gyroscope_hold,
     gyroscope_watch,
     pose_watch,
-    rest_watch,
-    stuck_watch,
     tread_watch,
 )
 from odometry.estimation.watches.bias_watch import BiasWatch
+from odometry.estimation.watches.contrary_treads import ContraryTreads
 from odometry.estimation.watches.frozen_treads import FrozenTreads
 from odometry.estimation.watches.gyroscope_hold import GyroscopeHold
 from odometry.estimation.watches.gyroscope_watch import GyroscopeWatch
@@ -49,6 +49,8 @@ class SensorWatch(NamedTuple):
         While the gyroscope says that the robot does not turn as the treads do.
     slip : SlipWatch or None
         Of the slip factors; None before the first pose.
+    contrary : ContraryTreads or None
+        Of the treads against the gyroscope.
     stuck : StuckWatch or None
         Of the poses while the treads drive.
     """
@@ -62,12 +64,18 @@ class SensorWatch(NamedTuple):
     rest: RestWatch | None = None
     frozen: FrozenTreads | None = None
     slip: SlipWatch | None = None
+    contrary: ContraryTreads | None = None
     stuck: StuckWatch | None = None
 
     @property
     def is_doubtful(self) -> bool:
         """Whether a tread contradicts the rest, so that the ICRs are not to be updated."""
-        return self.treads.is_doubtful or self.is_frozen
+        return self.treads.is_doubtful or self.is_frozen or self.is_contrary
+
+    @property
+    def is_contrary(self) -> bool:
+        """Whether no tread speed is known, because treads do not turn as the gyroscope says."""
+        return self.contrary is not None and self.contrary.is_found
 
     @property
     def is_frozen(self) -> bool:
@@ -100,6 +108,8 @@ class Sensed(NamedTuple):
     events : tuple of FilterEvent
     belief : (9,), (9, 9)
         At its beginning.
+    terrain : str
+        In force there.
     """
 
     watch: SensorWatch
@@ -108,6 +118,7 @@ class Sensed(NamedTuple):
     pose: FloatArray | None
     events: Events
     belief: Gaussian
+    terrain: str
 
 
 def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
@@ -174,16 +185,16 @@ def sensed(
     )
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    kept = watch.bias, watch.rest, watch.frozen, watch.slip, watch.stuck
+    kept = watch.bias, watch.rest, watch.frozen, watch.slip, watch.contrary, watch.stuck
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *kept)
-    return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief)
+    return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief, terrain)
 
 
 def _gap(since_s: float, frame: Frame, begin_s: float) -> tuple[float, Events]:
     """Since when odometry has a gap (NaN: it has none), and the event of one that has ended."""
     if frame.in_gap:
         return begin_s if math.isnan(since_s) else since_s, ()
-    return math.nan, () if math.isnan(since_s) else (_gap_event(since_s, begin_s),)
+    return math.nan, () if math.isnan(since_s) else (gap_event(since_s, begin_s),)
 
 
 def with_treads(
@@ -221,29 +232,15 @@ def with_treads(
         belief=before.belief,
         before=watch.treads.before_both,
     )
-    if treads is not watch.treads or frozen is not watch.frozen:
-        watch = watch._replace(treads=treads, frozen=frozen)
-    return watch, speeds_m_s, before.events + spikes + freed + thawed
-
-
-def ongoing(watch: SensorWatch, stamp_s: float) -> Events:
-    """Events that have begun and not ended at the last stamp of a run."""
-    found: list[FilterEvent] = []
-    if not math.isnan(watch.gap_since_s):
-        found.append(_gap_event(watch.gap_since_s, stamp_s))
-    if watch.treads.stuck >= 0:
-        stuck = watch.treads._replace(same_since_s=(stamp_s, stamp_s))
-        found += tread_watch.freed(stuck, stamp_s)[1]
-    found += frozen_treads.ended(watch.frozen, stamp_s)
-    if watch.hold is not None:
-        found += gyroscope_hold.ended(watch.hold, stamp_s)
-    found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
-    if watch.rest is not None:
-        found += rest_watch.ended(watch.rest, stamp_s)
-    found += stuck_watch.ended(watch.stuck, stamp_s)
-    return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
-
-
-def _gap_event(begin_s: float, end_s: float) -> FilterEvent:
-    text = "odometry has a gap: the speed before it was held, and the ICRs were not updated"
-    return FilterEvent("odometry_gap", begin_s, end_s, text)
+    is_silent = frame.in_gap or gyroscope_hold.repeats(watch.hold, before.begin_s)
+    contrary, turned = contrary_treads.stepped(
+        None if treads.stuck >= 0 else watch.contrary,
+        before.begin_s,
+        frame.stamp_s,
+        speeds_m_s=held_m_s,
+        yaw_rate=math.nan if is_silent else yaw_rate,
+        belief=before.belief,
+        terrain=before.terrain,
+    )
+    watch = watch._replace(treads=treads, frozen=frozen, contrary=contrary)
+    return watch, speeds_m_s, before.events + spikes + freed + thawed + turned

@@ -1,0 +1,160 @@
+"""What a tread does to the filter that reports what is not its own speed for a while.
+
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.estimation_treads [--seven] [--draw 0]
+
+Each recording gets, at a moment drawn at random from its middle half and for 3 to 15 s, each of
+the faults of `FAULTS`. A row shows the parameter that is farthest off 1, 10 and 60 s after the end
+of the fault, in deviations that `estimate.csv` states, against the same recording untouched; the
+place and the yaw likewise; and what was said that is not said of the untouched recording.
+"""
+
+import argparse
+import json
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from odometry.run import Run
+from tests.studies.estimation_outputs import outputs_of, with_columns
+from tests.studies.estimation_recordings import SEVEN, motion, recordings
+from tests.studies.estimation_stuck import TREADS, moving_s
+
+SHORTEST_S, LONGEST_S = 3.0, 15.0
+LATE_S, SMOOTH_S = 0.5, 0.5
+LATER_S = 1.0, 10.0, 60.0
+PARAMETERS = "y_left", "y_right", "x_icr", "alpha_left", "alpha_right", "gyro_bias"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seven", action="store_true", help="the seven that are held out")
+    parser.add_argument("--draw", type=int, default=0)
+    parser.add_argument("--save", type=Path, help="keep the rows here (JSON)")
+    arguments = parser.parse_args()
+    rows = []
+    for name in recordings(seven=arguments.seven):
+        if (name in SEVEN) != arguments.seven:
+            continue
+        run = Run.read(motion() / name)
+        plain = outputs_of(run)
+        rng = np.random.default_rng([arguments.draw, zlib.crc32(name.encode())])
+        for fault, change in FAULTS.items():
+            begin_s = float(rng.choice(moving_s(run)))
+            end_s = begin_s + float(rng.uniform(SHORTEST_S, LONGEST_S))
+            found = outputs_of(changed(run, change, begin_s, end_s, int(rng.integers(2))))
+            rows.append(
+                {"recording": name, "fault": fault, **figures(plain, found, begin_s, end_s)}
+            )
+            print(*(_short(each) for each in rows[-1].values()), flush=True)
+    if arguments.save:
+        arguments.save.write_text(json.dumps(rows, indent=1))
+
+
+def changed(run, change, begin_s, end_s, tread):
+    """The run whose treads report something else for a while."""
+    stamps_s, speeds = run.odometry.stamps_s, run.odometry.stack(*TREADS)
+    inside = (stamps_s >= begin_s) & (stamps_s < end_s)
+    reported = speeds.copy()
+    reported[inside] = change(stamps_s, speeds, inside, tread)[inside]
+    columns = dict(zip(TREADS, reported.T, strict=True))
+    return replace(run, odometry=with_columns(run.odometry, **columns))
+
+
+def mirrored(_, speeds, __, tread):
+    """One tread repeats the other."""
+    return speeds[:, [1 - tread, 1 - tread]]
+
+
+def exchanged(_, speeds, __, ___):
+    """Each has the speed of the other."""
+    return speeds[:, ::-1]
+
+
+def late(stamps_s, speeds, _, tread):
+    """One tread has its speed of half a second ago."""
+    then = np.searchsorted(stamps_s, stamps_s - LATE_S, side="right") - 1
+    return _with(speeds, tread, speeds[np.maximum(then, 0), tread])
+
+
+def without_sign(_, speeds, __, tread):
+    """One tread counts up only."""
+    return _with(speeds, tread, np.abs(speeds[:, tread]))
+
+
+def halved(_, speeds, __, tread):
+    """One tread loses every other count."""
+    return _with(speeds, tread, speeds[:, tread] / 2)
+
+
+def clipped(_, speeds, inside, __):
+    """Both go no faster than half of the largest speed meanwhile."""
+    most = np.abs(speeds[inside]).max() / 2
+    return np.clip(speeds, -most, most)
+
+
+def commanded(stamps_s, speeds, _, tread):
+    """One tread has a smooth speed."""
+    period_s = float(np.median(np.diff(stamps_s)))
+    weights = np.exp(-0.5 * (np.arange(-30, 31) * period_s / SMOOTH_S) ** 2)
+    return _with(speeds, tread, np.convolve(speeds[:, tread], weights / weights.sum(), "same"))
+
+
+FAULTS = {
+    each.__name__: each
+    for each in (mirrored, exchanged, late, without_sign, halved, clipped, commanded)
+}
+
+
+def _with(speeds, tread, column):
+    after = speeds.copy()
+    after[:, tread] = column
+    return after
+
+
+def figures(plain, found, begin_s, end_s):
+    """How many deviations parameters, place and yaw are off later, and what was said."""
+    before, after = plain.tables["estimate"], found.tables["estimate"]
+    row = {"begin_s": begin_s, "end_s": end_s}
+    for later_s in LATER_S:
+        at_s = end_s + later_s
+        if at_s > after["t"][-1]:
+            continue
+        off = {
+            name: abs(_at(after, at_s, name) - _at(before, at_s, name))
+            / max(_at(after, at_s, f"sigma_{name}"), 1e-9)
+            for name in PARAMETERS
+        }
+        worst = max(off, key=off.get)
+        apart_m = np.hypot(*(_at(after, at_s, c) - _at(before, at_s, c) for c in "xy"))
+        place = apart_m / np.hypot(_at(after, at_s, "sigma_x"), _at(after, at_s, "sigma_y"))
+        turned = np.angle(np.exp(1j * (_at(after, at_s, "yaw") - _at(before, at_s, "yaw"))))
+        yaw = abs(turned) / _at(after, at_s, "sigma_yaw")
+        row[f"after_{later_s:.0f}_s"] = [float(off[worst]), worst, float(place), float(yaw)]
+        row[f"wider_{later_s:.0f}_s"] = max(
+            float(_at(after, at_s, f"sigma_{n}") / max(_at(before, at_s, f"sigma_{n}"), 1e-9))
+            for n in PARAMETERS
+        )
+    row["said"] = sorted(_said(found) - _said(plain))
+    return row
+
+
+def _at(table, stamp_s, name):
+    return np.interp(stamp_s, table["t"], table[name])
+
+
+def _said(outputs):
+    """Kinds and times of events, and notes."""
+    of_filter = {f"{each['kind']} {each['begin_s']:.0f}" for each in outputs.events}
+    return of_filter | {note[:60] for note in outputs.result["notes"]}
+
+
+def _short(value):
+    if isinstance(value, float):
+        return f"{value:.2f}"
+    return [_short(each) for each in value] if isinstance(value, list) else value
+
+
+if __name__ == "__main__":
+    main()
