@@ -233,12 +233,13 @@ def with_treads(
         before=watch.treads.before_both,
     )
     is_silent = frame.in_gap or gyroscope_hold.repeats(watch.hold, before.begin_s)
+    is_known = not (is_silent or treads.is_doubtful)
     contrary, turned = contrary_treads.stepped(
-        None if treads.stuck >= 0 else watch.contrary,
+        watch.contrary,
         before.begin_s,
         frame.stamp_s,
         speeds_m_s=held_m_s,
-        yaw_rate=math.nan if is_silent else yaw_rate,
+        yaw_rate=yaw_rate if is_known else math.nan,
         belief=before.belief,
         terrain=before.terrain,
     )
