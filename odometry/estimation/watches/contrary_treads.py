@@ -114,7 +114,7 @@ def stepped(
         was_rate + share * (yaw_rate - was_rate),
     )
     before = belief if watch.before is None else watch.before
-    missing_rad_s = _missing_rad_s(before, rates)
+    missing_rad_s = _missing_rad_s(before, rates, are_same=left == right)
     found_s, is_believed = watch.found_s, watch.is_believed
     if watch.is_found:
         found_s += step_s
@@ -135,10 +135,11 @@ def stepped(
     ), ()
 
 
-def _missing_rad_s(before: Gaussian, rates: Rates) -> float:
+def _missing_rad_s(before: Gaussian, rates: Rates, *, are_same: bool) -> float:
     """By how much treads turn less than they must [rad/s].
 
-    It is -AT_REST_RAD_S where nothing turns, and less where treads turn enough.
+    Treads whose speeds are the same to the last digit must reach all of the turn. It is
+    -AT_REST_RAD_S where nothing turns, and less where treads turn enough.
     """
     left, right, yaw_rate = rates
     mean, covariance = before
@@ -148,8 +149,10 @@ def _missing_rad_s(before: Gaussian, rates: Rates) -> float:
     turned = yaw_rate - float(mean[GYRO_BIAS])
     asked = turned_by_treads(mean, left, right)
     agreed = math.copysign(asked, asked * turned)
-    allowed = AT_REST_RAD_S + BY_SPEED * speed_m_s / float(mean[Y_LEFT] - mean[Y_RIGHT])
-    missing = SHARE * abs(turned) - agreed
+    allowed = AT_REST_RAD_S
+    if not are_same:
+        allowed += BY_SPEED * speed_m_s / float(mean[Y_LEFT] - mean[Y_RIGHT])
+    missing = (1.0 if are_same else SHARE) * abs(turned) - agreed
     if abs(turned) < allowed:
         return -AT_REST_RAD_S
     if missing <= allowed:

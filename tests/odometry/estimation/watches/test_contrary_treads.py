@@ -129,11 +129,12 @@ def watched(speeds, yaw_rate, lasts_s, watch=None, *, begin_s=0.0, terrain="a", 
     [
         ((-0.5, 0.5), 0.2, 0.01),
         ((-0.3, 0.3), 1.0, 0.01),
-        ((0.5, 0.5), 0.15, 0.01),
+        ((0.5, 0.501), 0.15, 0.01),
+        ((0.5, 0.5), 0.05, 0.01),
         ((0.0, 0.0), 1.0, 0.01),
         ((0.5, 0.5), 1.0, 0.4),
     ],
-    ids=["slip", "more than half", "nearly straight", "at rest", "ICRs are not known"],
+    ids=["slip", "more than half", "nearly straight", "the same, straight", "at rest", "ICRs are not known"],
 )
 def test_these_are_not_contrary(speeds, yaw_rate, sigma):
     watch, events = watched(speeds, yaw_rate, 30.0, sigma=sigma)
@@ -153,6 +154,11 @@ def test_a_sum_of_missing_turns_is_found_and_ends_with_turns_that_agree(speeds, 
     agreeing = watched((-0.5, 0.5), 1.0, 3.0, watch, begin_s=2.2)
     assert not agreeing[0].is_found
     assert [event.kind for event in agreeing[1]] == ["contrary_treads"]
+
+
+def test_treads_that_are_the_same_to_the_last_digit_go_straight():
+    watch, _ = watched((0.5, 0.5), 0.15, 10.0)
+    assert watch.is_found
 
 
 def test_it_ends_with_another_terrain_and_a_silent_gyroscope():
