@@ -134,7 +134,7 @@ def watched(speeds, yaw_rate, lasts_s, watch=None, *, begin_s=0.0, terrain="a", 
         ((0.0, 0.0), 1.0, 0.01),
         ((0.5, 0.5), 1.0, 0.4),
     ],
-    ids=["slip", "more than half", "nearly straight", "the same, straight", "at rest", "ICRs are not known"],
+    ids=["slip", "more than half", "slow", "same", "at rest", "unknown ICRs"],
 )
 def test_these_are_not_contrary(speeds, yaw_rate, sigma):
     watch, events = watched(speeds, yaw_rate, 30.0, sigma=sigma)
