@@ -1,12 +1,24 @@
 """Notes on a filter after the end of its run."""
 
+import math
+
 import numpy as np
 
 from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
-from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.filter_event import FilterEvent, gap_event
 from odometry.estimation.filter_start import REINITIALISED
-from odometry.estimation.watches.ongoing import ongoing
+from odometry.estimation.watches import (
+    contrary_treads,
+    frozen_treads,
+    gyroscope_hold,
+    gyroscope_watch,
+    pose_watch,
+    rest_watch,
+    stuck_watch,
+    tread_watch,
+)
+from odometry.estimation.watches.sensor_watch import SensorWatch
 from odometry.gyroscope_bias import bias_events
 from odometry.run import Run
 
@@ -24,6 +36,25 @@ def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
     found += bias_events(replay)
     found += _off_at_end(run, replay)
     return tuple(found)
+
+
+def ongoing(watch: SensorWatch, stamp_s: float) -> tuple[FilterEvent, ...]:
+    """Events that have begun and not ended at the last stamp of a run."""
+    found: list[FilterEvent] = []
+    if not math.isnan(watch.gap_since_s):
+        found.append(gap_event(watch.gap_since_s, stamp_s))
+    if watch.treads.stuck >= 0:
+        stuck = watch.treads._replace(same_since_s=(stamp_s, stamp_s))
+        found += tread_watch.freed(stuck, stamp_s)[1]
+    found += frozen_treads.ended(watch.frozen, stamp_s)
+    found += contrary_treads.ended(watch.contrary, stamp_s)
+    if watch.hold is not None:
+        found += gyroscope_hold.ended(watch.hold, stamp_s)
+    found += gyroscope_watch.ongoing(watch.gyroscope, stamp_s)
+    if watch.rest is not None:
+        found += rest_watch.ended(watch.rest, stamp_s)
+    found += stuck_watch.ended(watch.stuck, stamp_s)
+    return (*found, *pose_watch.ongoing(watch.poses, stamp_s))
 
 
 def _heading(last: Estimate) -> list[FilterEvent]:

@@ -3,9 +3,9 @@
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.estimation_treads [--seven] [--draw 0]
 
 Each recording gets, at a moment drawn at random from its middle half and for 3 to 15 s, each of
-the faults of `FAULTS`. A row shows the parameter that is farthest off 1, 10 and 60 s after the end
-of the fault, in deviations that `estimate.csv` states, against the same recording untouched; the
-place and the yaw likewise; and what was said that is not said of the untouched recording.
+`FAULTS`. A row shows the parameter that is farthest off 1, 10 and 60 s after the end of the fault,
+in deviations that `estimate.csv` states, against the same recording untouched; place and yaw
+likewise; and what was said that is not said of the untouched recording.
 """
 
 import argparse
@@ -44,10 +44,8 @@ def main():
             begin_s = float(rng.choice(moving_s(run)))
             end_s = begin_s + float(rng.uniform(SHORTEST_S, LONGEST_S))
             found = outputs_of(changed(run, change, begin_s, end_s, int(rng.integers(2))))
-            rows.append(
-                {"recording": name, "fault": fault, **figures(plain, found, begin_s, end_s)}
-            )
-            print(*(_short(each) for each in rows[-1].values()), flush=True)
+            rows.append({"recording": name, "fault": fault, **figures(plain, found, end_s)})
+            print(*rows[-1].values(), flush=True)
     if arguments.save:
         arguments.save.write_text(json.dumps(rows, indent=1))
 
@@ -62,30 +60,10 @@ def changed(run, change, begin_s, end_s, tread):
     return replace(run, odometry=with_columns(run.odometry, **columns))
 
 
-def mirrored(_, speeds, __, tread):
-    """One tread repeats the other."""
-    return speeds[:, [1 - tread, 1 - tread]]
-
-
-def exchanged(_, speeds, __, ___):
-    """Each has the speed of the other."""
-    return speeds[:, ::-1]
-
-
 def late(stamps_s, speeds, _, tread):
     """One tread has its speed of half a second ago."""
     then = np.searchsorted(stamps_s, stamps_s - LATE_S, side="right") - 1
     return _with(speeds, tread, speeds[np.maximum(then, 0), tread])
-
-
-def without_sign(_, speeds, __, tread):
-    """One tread counts up only."""
-    return _with(speeds, tread, np.abs(speeds[:, tread]))
-
-
-def halved(_, speeds, __, tread):
-    """One tread loses every other count."""
-    return _with(speeds, tread, speeds[:, tread] / 2)
 
 
 def clipped(_, speeds, inside, __):
@@ -102,8 +80,13 @@ def commanded(stamps_s, speeds, _, tread):
 
 
 FAULTS = {
-    each.__name__: each
-    for each in (mirrored, exchanged, late, without_sign, halved, clipped, commanded)
+    "mirrored": lambda _, speeds, __, tread: speeds[:, [1 - tread, 1 - tread]],
+    "exchanged": lambda _, speeds, __, ___: speeds[:, ::-1],
+    "late": late,
+    "without_sign": lambda _, v, __, tread: _with(v, tread, np.abs(v[:, tread])),
+    "halved": lambda _, v, __, tread: _with(v, tread, v[:, tread] / 2),
+    "clipped": clipped,
+    "commanded": commanded,
 }
 
 
@@ -113,47 +96,34 @@ def _with(speeds, tread, column):
     return after
 
 
-def figures(plain, found, begin_s, end_s):
+def figures(plain, found, end_s):
     """How many deviations parameters, place and yaw are off later, and what was said."""
     before, after = plain.tables["estimate"], found.tables["estimate"]
-    row = {"begin_s": begin_s, "end_s": end_s}
+    row = {}
     for later_s in LATER_S:
         at_s = end_s + later_s
         if at_s > after["t"][-1]:
             continue
-        off = {
-            name: abs(_at(after, at_s, name) - _at(before, at_s, name))
-            / max(_at(after, at_s, f"sigma_{name}"), 1e-9)
-            for name in PARAMETERS
+        off = {name: _apart(before, after, at_s, name) for name in (*PARAMETERS, "x", "y", "yaw")}
+        sigma = {
+            name: max(np.interp(at_s, after["t"], after[f"sigma_{name}"]), 1e-9) for name in off
         }
-        worst = max(off, key=off.get)
-        apart_m = np.hypot(*(_at(after, at_s, c) - _at(before, at_s, c) for c in "xy"))
-        place = apart_m / np.hypot(_at(after, at_s, "sigma_x"), _at(after, at_s, "sigma_y"))
-        turned = np.angle(np.exp(1j * (_at(after, at_s, "yaw") - _at(before, at_s, "yaw"))))
-        yaw = abs(turned) / _at(after, at_s, "sigma_yaw")
-        row[f"after_{later_s:.0f}_s"] = [float(off[worst]), worst, float(place), float(yaw)]
-        row[f"wider_{later_s:.0f}_s"] = max(
-            float(_at(after, at_s, f"sigma_{n}") / max(_at(before, at_s, f"sigma_{n}"), 1e-9))
-            for n in PARAMETERS
-        )
-    row["said"] = sorted(_said(found) - _said(plain))
-    return row
+        worst = max(PARAMETERS, key=lambda name: off[name] / sigma[name])
+        place = np.hypot(off["x"], off["y"]) / np.hypot(sigma["x"], sigma["y"])
+        yaw = off["yaw"] / sigma["yaw"]
+        row[f"after_{later_s:.0f}_s"] = [off[worst] / sigma[worst], worst, float(place), yaw]
+    return {**row, "said": sorted(_said(found) - _said(plain))}
 
 
-def _at(table, stamp_s, name):
-    return np.interp(stamp_s, table["t"], table[name])
+def _apart(before, after, at_s, name):
+    apart = np.interp(at_s, after["t"], after[name]) - np.interp(at_s, before["t"], before[name])
+    return float(abs(np.angle(np.exp(1j * apart)) if name == "yaw" else apart))
 
 
 def _said(outputs):
     """Kinds and times of events, and notes."""
     of_filter = {f"{each['kind']} {each['begin_s']:.0f}" for each in outputs.events}
     return of_filter | {note[:60] for note in outputs.result["notes"]}
-
-
-def _short(value):
-    if isinstance(value, float):
-        return f"{value:.2f}"
-    return [_short(each) for each in value] if isinstance(value, list) else value
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, STATES, Y_LEFT, Y_RIGHT
 from odometry.estimation.watches.contrary_treads import FOUND_RAD, MOST_S, stepped
@@ -39,7 +38,7 @@ def driven():
     return drive(90.0, speeds_of=pivoting)
 
 
-def estimated(driven, fault=None, *, posed=True, config=None):
+def estimated(driven, fault=None, *, posed=True):
     rng = np.random.default_rng(3)
     speeds = driven.speeds_m_s + rng.normal(0, 0.005, driven.speeds_m_s.shape)
     if fault is not None:
@@ -48,9 +47,7 @@ def estimated(driven, fault=None, *, posed=True, config=None):
     poses = noisy_poses(driven, rng)
     if not posed:
         poses[BEGIN:] = np.nan
-    return estimates_of(
-        frames_of(driven, poses=poses, yaw_rates=rates, speeds=speeds), config=config
-    )
+    return estimates_of(frames_of(driven, poses=poses, yaw_rates=rates, speeds=speeds))
 
 
 def off(estimate):
@@ -84,15 +81,10 @@ def test_a_drive_without_a_fault_is_the_same(driven):
     assert all(one.watch.contrary is None or one.watch.contrary.found_s == 0 for one in estimates)
 
 
-def test_the_published_filter_watches_nothing(driven):
-    estimates = estimated(driven, "mirrored", config=IcrEkfConfig(**PAPER))
-    assert estimates[-1].watch is None
-
-
 def test_a_set_whose_width_is_far_too_large_is_learned_in_the_end(driven):
     """Treads that are contrary for 20 s of turns are believed."""
     known = TerrainParameters("icr", {"y_left": 1.6, "y_right": -1.6, "x_icr": 0.0})
-    ekf = IcrEkf(WIDTH, ParameterSet({"a": known}), IcrEkfConfig())
+    ekf = IcrEkf(WIDTH, ParameterSet({"a": known}))
     rates, poses = driven.yaw_rates_rad_s, noisy_poses(driven, np.random.default_rng(3))
     frames = frames_of(driven, poses=poses, yaw_rates=rates)
     estimates = [ekf.start(frames[0], "a")]

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.watches.rest_watch import RestWatch, watched
-from odometry.estimation.watches.ongoing import ongoing
+from odometry.run_end import ongoing
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     drive,
