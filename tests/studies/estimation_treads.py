@@ -3,8 +3,8 @@
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.estimation_treads [--seven] [--draw 0]
 
 Each recording gets, at a moment drawn at random from its middle half and for 3 to 15 s, each of
-`FAULTS`. A row shows the parameter that is farthest off 1, 10 and 60 s after the end of the fault,
-in deviations that `estimate.csv` states, against the same recording untouched; place and yaw
+`FAULTS`. A row (JSON) shows the parameter that is farthest off 1, 10 and 60 s after the end, in
+deviations that `estimate.csv` states, against the same recording untouched; place and yaw
 likewise; and what was said that is not said of the untouched recording.
 """
 
@@ -12,7 +12,6 @@ import argparse
 import json
 import zlib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -31,9 +30,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seven", action="store_true", help="the seven that are held out")
     parser.add_argument("--draw", type=int, default=0)
-    parser.add_argument("--save", type=Path, help="keep the rows here (JSON)")
     arguments = parser.parse_args()
-    rows = []
     for name in recordings(seven=arguments.seven):
         if (name in SEVEN) != arguments.seven:
             continue
@@ -44,10 +41,8 @@ def main():
             begin_s = float(rng.choice(moving_s(run)))
             end_s = begin_s + float(rng.uniform(SHORTEST_S, LONGEST_S))
             found = outputs_of(changed(run, change, begin_s, end_s, int(rng.integers(2))))
-            rows.append({"recording": name, "fault": fault, **figures(plain, found, end_s)})
-            print(*rows[-1].values(), flush=True)
-    if arguments.save:
-        arguments.save.write_text(json.dumps(rows, indent=1))
+            row = {"recording": name, "fault": fault, **figures(plain, found, end_s)}
+            print(json.dumps(row), flush=True)
 
 
 def changed(run, change, begin_s, end_s, tread):
@@ -61,19 +56,16 @@ def changed(run, change, begin_s, end_s, tread):
 
 
 def late(stamps_s, speeds, _, tread):
-    """One tread has its speed of half a second ago."""
     then = np.searchsorted(stamps_s, stamps_s - LATE_S, side="right") - 1
     return _with(speeds, tread, speeds[np.maximum(then, 0), tread])
 
 
 def clipped(_, speeds, inside, __):
-    """Both go no faster than half of the largest speed meanwhile."""
     most = np.abs(speeds[inside]).max() / 2
     return np.clip(speeds, -most, most)
 
 
 def commanded(stamps_s, speeds, _, tread):
-    """One tread has a smooth speed."""
     period_s = float(np.median(np.diff(stamps_s)))
     weights = np.exp(-0.5 * (np.arange(-30, 31) * period_s / SMOOTH_S) ** 2)
     return _with(speeds, tread, np.convolve(speeds[:, tread], weights / weights.sum(), "same"))

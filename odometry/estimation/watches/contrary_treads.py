@@ -34,6 +34,7 @@ AT_REST_RAD_S, BY_SPEED = (
 )  # ... these, in rad/s and as a share of speed over the width, ...
 SIGMAS = 2.5  # ... and what the uncertainty of ICRs and slip factors explains
 FOUND_RAD, MOST_RAD = 0.3, 0.6  # a sum of what is missing: no speed is known; it grows no more
+SLOW_S = 20.0  # within which it must be found: else ICRs are learned
 MOST_S = 20.0  # in all, until as many seconds of turns agree: then ICRs or slip factors are others
 SLIP = 100.0  # factor on the variance of slip meanwhile: as much as the way itself
 OF_TREADS = np.array([Y_LEFT, Y_RIGHT, X_ICR, ALPHA_LEFT, ALPHA_RIGHT])
@@ -123,7 +124,8 @@ def stepped(
         found_s = max(found_s - step_s, 0.0)
         is_believed &= found_s > 0
     missing_rad = watch.missing_rad + missing_rad_s * step_s
-    if missing_rad <= 0 or is_believed:
+    is_slow = not watch.is_found and begin_s - watch.since_s > SLOW_S
+    if missing_rad <= 0 or is_believed or is_slow:
         return ContraryTreads(rates, terrain, found_s, is_believed), ended(watch, stamp_s)
     return ContraryTreads(
         *(rates, terrain, found_s, False),
