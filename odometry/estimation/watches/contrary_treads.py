@@ -96,10 +96,8 @@ def stepped(
         Tread speeds used over the step; NaN where they are not known.
     yaw_rate : float
         Of the gyroscope over it [rad/s]; NaN where there is none.
-    belief : (9,), (9, 9)
+    belief, terrain : ((9,), (9, 9)), str
         At its beginning.
-    terrain : str
-        In force there.
     """
     left, right = speeds_m_s.tolist()
     if math.isnan(left + right + yaw_rate):
