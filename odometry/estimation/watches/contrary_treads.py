@@ -27,12 +27,10 @@ from odometry.estimation.transition import (
 from odometry.estimation.watches.rest_watch import STILL_M_S
 
 SMOOTH_S = 0.3  # over which speeds and yaw rates are averaged: a body follows its treads
-SHARE = 0.5  # of the turn of the gyroscope, which treads must reach, less ...
-AT_REST_RAD_S, BY_SPEED = (
-    0.05,
-    0.1,
-)  # ... these, in rad/s and as a share of speed over the width, ...
-SIGMAS = 2.5  # ... and what the uncertainty of ICRs and slip factors explains
+SHARE = 0.5  # of the turn of the gyroscope, which treads must reach, less what follows
+AT_REST_RAD_S = 0.05
+BY_SPEED = 0.1  # of speed over width
+SIGMAS = 2.5  # of ICRs and slip factors
 FOUND_RAD, MOST_RAD = 0.3, 0.6  # a sum of what is missing: no speed is known; it grows no more
 SLOW_S = 20.0  # within which it must be found: else ICRs are learned
 MOST_S = 20.0  # in all, until as many seconds of turns agree: then ICRs or slip factors are others
@@ -144,17 +142,17 @@ def _missing_rad_s(before: Gaussian, rates: Rates, *, are_same: bool) -> float:
     left, right, yaw_rate = rates
     mean, covariance = before
     speed_m_s = (abs(left) + abs(right)) / 2
-    if speed_m_s <= STILL_M_S:
+    turned = yaw_rate - mean.item(GYRO_BIAS)
+    if speed_m_s <= STILL_M_S or abs(turned) < AT_REST_RAD_S:
         return -AT_REST_RAD_S
-    turned = yaw_rate - float(mean[GYRO_BIAS])
-    asked = turned_by_treads(mean, left, right)
-    agreed = math.copysign(asked, asked * turned)
     allowed = AT_REST_RAD_S
     if not are_same:
-        allowed += BY_SPEED * speed_m_s / float(mean[Y_LEFT] - mean[Y_RIGHT])
+        allowed += BY_SPEED * speed_m_s / (mean.item(Y_LEFT) - mean.item(Y_RIGHT))
+        if abs(turned) < allowed:
+            return -AT_REST_RAD_S
+    asked = turned_by_treads(mean, left, right)
+    agreed = math.copysign(asked, asked * turned)
     missing = (1.0 if are_same else SHARE) * abs(turned) - agreed
-    if abs(turned) < allowed:
-        return -AT_REST_RAD_S
     if missing <= allowed:
         return min(missing - allowed, -AT_REST_RAD_S)
     by_state = tread_yaw_rate(mean, np.array([left, right]), yaw_rate).by_state
