@@ -31,7 +31,7 @@ from odometry.checks.poses.smoothed_poses import smoothed_poses
 from odometry.checks.poses.yaw_drift import yaw_drifts
 from odometry.checks.settings.settings import columns, settings
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
-from odometry.checks.stamps.bursts import spread
+from odometry.checks.stamps.bursts import spread_bursts
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.gaps import gaps
 from odometry.checks.stamps.held_treads import held_treads
@@ -145,7 +145,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     if len(run.odometry) < LEAST_ROWS:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     with np.errstate(over="ignore", invalid="ignore"):
-        late, run = spread(run)
+        late, run = spread_bursts(run)
         wrapped, run = unwrapped(run)
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.checks.stamps.bursts import spread
+from odometry.checks.stamps.bursts import spread_bursts
 from tests.odometry.checks.drives import drive, table
 from tests.odometry.checks.faulty import SENSORS
 
@@ -49,7 +49,7 @@ def test_bursts_are_the_only_finding(driven, fewest, most, sensors):
 
 
 def test_rows_that_are_spread_have_nearly_their_own_stamps(driven):
-    found, run = spread(in_bursts(driven, 3, 6))
+    found, run = spread_bursts(in_bursts(driven, 3, 6))
     assert len(found) == 1
     off_s = run.odometry.stamps_s - driven.odometry.stamps_s
     assert np.abs(off_s).max() < 0.01  # of 0.3 s between bursts
@@ -57,7 +57,7 @@ def test_rows_that_are_spread_have_nearly_their_own_stamps(driven):
 
 def test_equal_stamps_of_a_burst_are_spread_too(driven):
     whole_s = np.repeat(driven.odometry.stamps_s[4::5], 5)
-    found, run = spread(stamped(driven, whole_s))
+    found, run = spread_bursts(stamped(driven, whole_s))
     assert len(found) == 1
     assert run.odometry.stamps_s == pytest.approx(driven.odometry.stamps_s)
 
@@ -68,7 +68,7 @@ def test_rows_of_an_imu_are_spread_as_well(driven):
     late = in_bursts(turned, 5, 8)
     imu = table("imu.csv", t=late.odometry.stamps_s, gyro_z=rates)
     columns = {name: turned.odometry[name] for name in ("t", "v_left", "v_right")}
-    found, run = spread(replace(turned, odometry=table("odometry.csv", **columns), imu=imu))
+    found, run = spread_bursts(replace(turned, odometry=table("odometry.csv", **columns), imu=imu))
     assert [finding.seen.split(" come")[0] for finding in found] == ["rows of imu.csv"]
     assert run.imu.stamps_s == pytest.approx(turned.odometry.stamps_s, abs=0.01)
 
@@ -88,7 +88,7 @@ def test_poses_of_two_sensors_that_come_together_are_left(driven, apart_m):
     twice["t"][1::2] += 2e-3
     twice["x"][1::2] += apart_m
     run = replace(driven, pose=replace(each, columns=twice))
-    assert spread(run)[1] is run
+    assert spread_bursts(run)[1] is run
 
 
 @pytest.mark.parametrize("limit_m_s", [0.02, 0.1, 0.2])
@@ -98,11 +98,11 @@ def test_a_log_of_changes_has_no_bursts(driven, limit_m_s):
     steps[np.arange(len(steps)) % 200 < 150] = 0.0  # rests between
     rows = np.append(True, (np.diff(steps, axis=0) != 0).any(axis=1))
     log = stamped(driven, driven.odometry.stamps_s[rows], rows)
-    assert spread(log) == ([], log)
+    assert spread_bursts(log) == ([], log)
 
 
 def test_even_and_shaken_stamps_are_left(driven, rng):
     stamps_s = driven.odometry.stamps_s
     for each in (stamps_s, stamps_s + rng.uniform(0, 0.045, len(stamps_s))):
         run = stamped(driven, each)
-        assert spread(run)[1] is run
+        assert spread_bursts(run)[1] is run
