@@ -63,7 +63,7 @@ def alone(evidence: Evidence, found: Sequence[Finding], find: Found) -> list[Fin
         cause
         for cause in warnings
         if cause.name in TRIED_ALONE
-        or names - {cause.name} <= TRIED_AGAINST.get(cause.name, frozenset())
+        or (cause.name in TRIED_AGAINST and names <= {cause.name} | TRIED_AGAINST[cause.name])
     ]
     only = _explains_all(evidence, causes, find) if len(warnings) > 1 else None
     return list(found) if only is None else [only, *_notes(found)]

@@ -5,12 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
-MOST_CLOSE = 0.4  # share of the rows that follow so close: in pairs half of them do
+MOST_CLOSE = 0.45  # share of the rows that follow so close: in pairs half of them do
+# Share of the time within bursts. Rows that are sent at once take little; with more of it they may
+# have been recorded now and then; with most of this, or more, they were.
+AT_ONCE, NOW_AND_THEN = 0.02, 0.08
+LONGEST_S = 5.0  # a longer mean period is of stamps in another unit
 OFTEN = 20  # bursts
 PIECE = 20  # bursts, over which rows are counted
 # Of the time between bursts, by which their last rows may be off even stamps: rows of a log of
@@ -25,6 +29,8 @@ PAIRS = 2.2  # rows of a burst in the mean
 ARRIVAL = (
     "stamps are those of arrival: rows were sent in bursts (buffered), not when they were measured"
 )
+RECORDED = ", or rows were recorded for a moment now and then"
+ROUNDED = ", or stamps were rounded to whole steps"
 SEVERAL = ", or the camera took several images at a time"
 TWO_OF_EACH = ", or each moment has two rows, of the messages of either tread"
 WARNED_S = 0.1  # between bursts: with less, values are of nearly the right time
@@ -33,14 +39,17 @@ WARNED_S = 0.1  # between bursts: with less, values are of nearly the right time
 def spread_bursts(run: Run) -> tuple[list[Finding], Run]:
     """A finding for each file whose rows come many at once, and the run with them spread evenly.
 
-    Rows of bursts are as many as a steady sensor has measured since the burst before.
+    Rows of bursts are as many as a steady sensor has measured since the burst before. Rows that may
+    have been recorded now and then stay where they are.
     """
     found = []
     for name in ("odometry", "imu", "pose"):
         table = getattr(run, name)
         last = None if table is None else _last_of_bursts(table.stamps_s)
-        if last is not None and (name != "pose" or _go_on(table.stack("x", "y"), last)):
-            found.append(_finding(f"{name}.csv", table.stamps_s, last))
+        if last is None or (name == "pose" and not _go_on(table.stack("x", "y"), last)):
+            continue
+        found.append(_finding(f"{name}.csv", table.stamps_s, last))
+        if _within(table.stamps_s) < AT_ONCE:
             columns = {**table.columns, "t": _even_s(table.stamps_s, last)}
             run = replace(run, **{name: replace(table, columns=columns)})
     return found, run
@@ -56,27 +65,43 @@ def in_bursts(file: str, stamps_s: FloatArray) -> Iterator[Finding]:
 def _last_of_bursts(stamps_s: FloatArray) -> IntArray | None:
     """Numbers of the last rows of all bursts; None where rows do not come in bursts."""
     lasts_s = np.diff(stamps_s)
-    if len(lasts_s) < OFTEN or (lasts_s < 0).any():
+    if len(lasts_s) < OFTEN or (lasts_s < 0).any() or lasts_s.mean() > LONGEST_S:
         return None
-    close = lasts_s < CLOSE * float(lasts_s.mean())
+    close = _close(lasts_s)
     last = np.append(np.flatnonzero(~close), len(close))
-    if close.mean() < MOST_CLOSE or len(last) <= OFTEN or not _steady(stamps_s, last):
+    if close.mean() < MOST_CLOSE or len(last) <= OFTEN or _within(stamps_s) > NOW_AND_THEN:
         return None
-    return np.asarray(last)
+    return np.asarray(last) if _steady(stamps_s, last) else None
+
+
+def _close(lasts_s: FloatArray) -> BoolArray:
+    """Which steps (N,) are within a burst."""
+    return np.asarray(lasts_s < CLOSE * float(lasts_s.mean()))
+
+
+def _within(stamps_s: FloatArray) -> float:
+    """Share of the time within bursts."""
+    lasts_s = np.diff(stamps_s)
+    return float(np.sum(lasts_s[_close(lasts_s)]) / np.sum(lasts_s))
 
 
 def _finding(file: str, stamps_s: FloatArray, last: IntArray) -> Finding:
-    waits_s, in_each = np.diff(stamps_s)[last[:-1]], len(stamps_s) / len(last)
-    usual_s = float(np.median(waits_s))
-    other = SEVERAL if file == "images.csv" else ""
-    if file == "odometry.csv" and in_each < PAIRS:
-        other = TWO_OF_EACH
+    sizes, waits_s = np.diff(last), np.diff(stamps_s)[last[:-1]]
+    several = sizes > 1  # of all but the first
+    in_each, usual_s = float(sizes[several].mean()), float(np.median(waits_s[several]))
+    within = _within(stamps_s)
+    others = (
+        RECORDED * (within > AT_ONCE)
+        + ROUNDED * (within == 0)
+        + SEVERAL * (file == "images.csv")
+        + TWO_OF_EACH * (file == "odometry.csv" and in_each < PAIRS)
+    )
     return Finding(
         NAMES.get(file, "uneven_stamps"),
         Level.WARNING if usual_s > WARNED_S else Level.NOTE,
-        f"rows of {file} come in {len(last)} bursts of {in_each:.1f} rows in the mean, "
+        f"rows of {file} come in {several.sum() + 1} bursts of {in_each:.1f} rows in the mean, "
         f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
-        f"Either {ARRIVAL}{other}" if other else ARRIVAL.capitalize(),
+        f"Either {ARRIVAL}{others}" if others else ARRIVAL.capitalize(),
         "Use the stamps of the sensor (header time), or spread the rows evenly",
     )
 
@@ -100,6 +125,8 @@ def _go_on(places_m: FloatArray, last: IntArray) -> bool:
     after = last[1:-1][np.diff(last[:-1]) > 1]  # steps from one burst to the next
     to_next_m, within_m = steps_m[after], steps_m[after - 1]
     sizes_m = np.hypot(*to_next_m.T)
+    if not np.isfinite(sizes_m).any():
+        return False
     moving = sizes_m > MOVING * np.nanquantile(sizes_m, 0.9)
     if moving.sum() < OFTEN:
         return False

@@ -194,8 +194,9 @@ def stamps(evidence: Evidence) -> Iterator[Finding]:
                 f"({100 * share:.3g} %; row {first}), and they were dropped",
                 "The logger wrote a stamp twice"
                 if share <= 0.2
-                else "Stamps have too few digits, or two recordings were merged; the rows that are "
-                "left are not of their times, so that delays were not judged",
+                else "Stamps have too few digits, or are those of arrival of rows that were sent "
+                "several at once, or two recordings were merged; the rows that are left are not of "
+                "their times, so that delays were not judged",
                 "Nothing to do"
                 if share <= 0.2
                 else "Write stamps with more digits, or one source alone, and check again",

@@ -46,7 +46,7 @@ class ContraryTreads(NamedTuple):
     Attributes
     ----------
     rates : (left [m/s], right [m/s], yaw rate [rad/s])
-        Averaged.
+        Averaged; NaN where one of them is not known.
     terrain : str
         In force.
     found_s : float
@@ -98,10 +98,12 @@ def stepped(
         At its beginning.
     """
     left, right = speeds_m_s.tolist()
-    if math.isnan(left + right + yaw_rate):
-        return None, ended(watch, begin_s)
-    if watch is None or watch.terrain != terrain:
-        return ContraryTreads((left, right, yaw_rate), terrain), ended(watch, begin_s)
+    if (
+        watch is None
+        or watch.terrain != terrain
+        or math.isnan(left + right + yaw_rate + sum(watch.rates))
+    ):
+        return _begun(watch, (left, right, yaw_rate), terrain), ended(watch, begin_s)
     step_s = stamp_s - begin_s
     share = step_s / (SMOOTH_S + step_s)
     was_left, was_right, was_rate = watch.rates
@@ -131,6 +133,13 @@ def stepped(
         travel_m=watch.travel_m + (abs(left) + abs(right)) / 2 * step_s,
         is_found=watch.is_found or missing_rad > FOUND_RAD,
     ), ()
+
+
+def _begun(watch: ContraryTreads | None, rates: Rates, terrain: str) -> ContraryTreads:
+    """A watch that begins, also after a gap: what was found before counts to `MOST_S`."""
+    if watch is None:
+        return ContraryTreads(rates, terrain)
+    return ContraryTreads(rates, terrain, watch.found_s, watch.is_believed)
 
 
 def _missing_rad_s(before: Gaussian, rates: Rates, *, are_same: bool) -> float:

@@ -48,7 +48,8 @@ class SensorWatch(NamedTuple):
     frozen : FrozenTreads or None
         While the gyroscope says that the robot does not turn as the treads do.
     slip : SlipWatch or None
-        Of the slip factors; None before the first pose.
+        Of the slip factors; None before the first pose, and until the next one where no tread
+        speed is known.
     contrary : ContraryTreads or None
         Of the treads against the gyroscope.
     stuck : StuckWatch or None

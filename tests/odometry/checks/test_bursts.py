@@ -91,6 +91,39 @@ def test_poses_of_two_sensors_that_come_together_are_left(driven, apart_m):
     assert spread_bursts(run)[1] is run
 
 
+def test_rows_recorded_now_and_then_are_no_bursts(driven):
+    """For a second of each eight: rows are as many as a steady logger has, and of their time."""
+    at_s = driven.odometry.stamps_s
+    rows = at_s % 8 < 1
+    log = stamped(driven, at_s[rows], rows)
+    assert spread_bursts(log) == ([], log)
+
+
+def test_rows_that_may_be_recorded_now_and_then_stay_where_they_are(driven):
+    """Seven rows of each hundred, their own period apart: 6 % of the time."""
+    at_s = driven.odometry.stamps_s
+    rows = np.arange(len(at_s)) % 100 < 7
+    (found,), run = spread_bursts(stamped(driven, at_s[rows], rows))
+    assert found.cause.endswith("or rows were recorded for a moment now and then")
+    assert run.odometry.stamps_s.tolist() == at_s[rows].tolist()
+
+
+def test_bursts_of_one_half_have_the_words_of_that_half(driven):
+    whole = in_bursts(driven, 5, 5).odometry.stamps_s
+    at_s = driven.odometry.stamps_s
+    later = np.arange(len(at_s)) > 1500
+    (found,), _ = spread_bursts(stamped(driven, np.where(later, at_s, whole)))
+    assert "bursts of 5.0 rows in the mean, usually 0.25 s" in found.seen
+
+
+def test_poses_without_places_and_stamps_in_milliseconds_have_none(driven):
+    run = in_bursts(driven, 4, 4, "pose")
+    empty = {**run.pose.columns, "x": np.full(len(run.pose), np.nan)}
+    assert spread_bursts(replace(run, pose=replace(run.pose, columns=empty)))[0] == []
+    late = in_bursts(driven, 5, 5)
+    assert spread_bursts(stamped(driven, 1000 * late.odometry.stamps_s))[0] == []
+
+
 @pytest.mark.parametrize("limit_m_s", [0.02, 0.1, 0.2])
 def test_a_log_of_changes_has_no_bursts(driven, limit_m_s):
     """Rows close together where the robot speeds up, and none for seconds elsewhere."""

@@ -161,7 +161,25 @@ def test_it_ends_with_another_terrain_and_a_silent_gyroscope():
     other, events = watched((0.5, 0.5), 1.0, 0.1, watch, begin_s=2.0, terrain="b")
     assert not other.is_found
     assert len(events) == 1
-    assert watched((0.5, 0.5), math.nan, 0.1, watch, begin_s=2.0)[0] is None
+    assert not watched((0.5, 0.5), math.nan, 0.1, watch, begin_s=2.0)[0].is_found
+
+
+@pytest.mark.parametrize("interruption", [{"yaw_rate": math.nan}, {"terrain": "b"}])
+def test_what_interrupts_it_does_not_let_it_begin_anew(interruption):
+    """Ten seconds each: it is found for 20 s in all."""
+    watch, found_s = None, 0.0
+    for k in range(12):
+        watch, _ = watched((0.5, 0.5), 1.0, 10.0, watch, begin_s=10.5 * k)
+        found_s += 10.0 * watch.is_found
+        watch, _ = watched(
+            (0.5, 0.5),
+            **{"yaw_rate": 1.0, **interruption},
+            lasts_s=0.5,
+            watch=watch,
+            begin_s=10.5 * k + 10.0,
+        )
+    assert watch.is_believed
+    assert found_s <= MOST_S + 10.0
 
 
 def test_after_long_the_treads_are_believed_until_turns_agree_for_as_long():
