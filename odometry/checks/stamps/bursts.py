@@ -11,8 +11,8 @@ from odometry.run import Run
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
 MOST_CLOSE = 0.45  # share of the rows that follow so close: in pairs half of them do
-# Share of the time within bursts. Rows that are sent at once take little; with more of it they may
-# have been recorded now and then; with most of this, or more, they were.
+# Share of the time within bursts: rows that are sent at once take less than the first; rows that
+# take more than the second were recorded now and then; between the two they may be either.
 AT_ONCE, NOW_AND_THEN = 0.02, 0.08
 LONGEST_S = 5.0  # a longer mean period is of stamps in another unit
 OFTEN = 20  # bursts
