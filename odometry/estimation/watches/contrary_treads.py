@@ -98,11 +98,11 @@ def stepped(
         At its beginning.
     """
     left, right = speeds_m_s.tolist()
-    if (
-        watch is None
-        or watch.terrain != terrain
-        or math.isnan(left + right + yaw_rate + sum(watch.rates))
-    ):
+    is_known = not math.isnan(left + right + yaw_rate)
+    was_known = watch is not None and not math.isnan(sum(watch.rates))
+    if not is_known and not was_known:
+        return watch, ()
+    if watch is None or watch.terrain != terrain or not (is_known and was_known):
         return _begun(watch, (left, right, yaw_rate), terrain), ended(watch, begin_s)
     step_s = stamp_s - begin_s
     share = step_s / (SMOOTH_S + step_s)
