@@ -185,7 +185,7 @@ def _searched(
 
     The search begins with the first source smoothed by some time constants, (S,) each.
     """
-    from scipy.optimize import OptimizeResult, minimize  # noqa: PLC0415 - slow to load
+    from scipy.optimize import minimize  # noqa: PLC0415 - slow to load
 
     period_s = _period_s(trial.at_s)
     starts = [(*_shift(trial, source, period_s), of_s) for of_s, source in smoothed.items()]
@@ -196,21 +196,23 @@ def _searched(
     if start[0] < EXACT:
         return start
     steps = np.array([[0, 0], [period_s / 2, 0], [0, 0.03]])
+    tried: list[float] = []
 
-    def refined_in(evaluations: int) -> OptimizeResult:
-        return minimize(
-            lambda at: trial.left(at[0], abs(at[1])),
-            (delay_s, smoothed_s),
-            method="Nelder-Mead",
-            options={
-                "maxfev": evaluations,
-                "initial_simplex": steps + np.array([delay_s, smoothed_s]),
-            },
-        )
+    def left(at: FloatArray) -> float:
+        tried.append(trial.left(at[0], abs(at[1])))
+        return tried[-1]
 
-    found = refined_in(FEW)
-    if found.fun < HOPELESS:
-        found = refined_in(REFINED)
+    def give_up(_: FloatArray) -> None:
+        if len(tried) >= FEW and min(tried) > HOPELESS:
+            raise StopIteration
+
+    found = minimize(
+        left,
+        (delay_s, smoothed_s),
+        method="Nelder-Mead",
+        callback=give_up,
+        options={"maxfev": REFINED, "initial_simplex": steps + np.array([delay_s, smoothed_s])},
+    )
     refined = (float(found.fun), float(found.x[0]), float(abs(found.x[1])), trial.sampled)
     return min(start, refined, key=lambda one: one[0])
 

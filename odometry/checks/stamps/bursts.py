@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level
 from odometry.run import Run
 
@@ -36,6 +37,21 @@ TWO_OF_EACH = ", or each moment has two rows, of the messages of either tread"
 WARNED_S = 0.1  # between bursts: with less, values are of nearly the right time
 
 
+class Bursts(NamedTuple):
+    """Where rows come many at once.
+
+    Attributes
+    ----------
+    last : (B,)
+        Numbers of the last rows of all bursts.
+    within : float
+        Share of the time within bursts.
+    """
+
+    last: IntArray
+    within: float
+
+
 def spread_bursts(run: Run) -> tuple[list[Finding], Run]:
     """A finding for each file whose rows come many at once, and the run with them spread evenly.
 
@@ -45,51 +61,41 @@ def spread_bursts(run: Run) -> tuple[list[Finding], Run]:
     found = []
     for name in ("odometry", "imu", "pose"):
         table = getattr(run, name)
-        last = None if table is None else _last_of_bursts(table.stamps_s)
-        if last is None or (name == "pose" and not _go_on(table.stack("x", "y"), last)):
+        bursts = None if table is None else _bursts(table.stamps_s)
+        if bursts is None or (name == "pose" and not _go_on(table.stack("x", "y"), bursts.last)):
             continue
-        found.append(_finding(f"{name}.csv", table.stamps_s, last))
-        if _within(table.stamps_s) < AT_ONCE:
-            columns = {**table.columns, "t": _even_s(table.stamps_s, last)}
+        found.append(_finding(f"{name}.csv", table.stamps_s, bursts))
+        if bursts.within < AT_ONCE:
+            columns = {**table.columns, "t": _even_s(table.stamps_s, bursts.last)}
             run = replace(run, **{name: replace(table, columns=columns)})
     return found, run
 
 
 def in_bursts(file: str, stamps_s: FloatArray) -> Iterator[Finding]:
     """The finding where rows of a file come many at once."""
-    last = _last_of_bursts(stamps_s)
-    if last is not None:
-        yield _finding(file, stamps_s, last)
+    bursts = _bursts(stamps_s)
+    if bursts is not None:
+        yield _finding(file, stamps_s, bursts)
 
 
-def _last_of_bursts(stamps_s: FloatArray) -> IntArray | None:
-    """Numbers of the last rows of all bursts; None where rows do not come in bursts."""
+def _bursts(stamps_s: FloatArray) -> Bursts | None:
+    """Of the stamps (N,) of a file; None where rows do not come in bursts."""
     lasts_s = np.diff(stamps_s)
     if len(lasts_s) < OFTEN or (lasts_s < 0).any() or lasts_s.mean() > LONGEST_S:
         return None
-    close = _close(lasts_s)
+    close = lasts_s < CLOSE * float(lasts_s.mean())
     last = np.append(np.flatnonzero(~close), len(close))
-    if close.mean() < MOST_CLOSE or len(last) <= OFTEN or _within(stamps_s) > NOW_AND_THEN:
+    within = float(np.sum(lasts_s[close]) / np.sum(lasts_s))
+    if close.mean() < MOST_CLOSE or len(last) <= OFTEN or within > NOW_AND_THEN:
         return None
-    return np.asarray(last) if _steady(stamps_s, last) else None
+    return Bursts(np.asarray(last), within) if _steady(stamps_s, last) else None
 
 
-def _close(lasts_s: FloatArray) -> BoolArray:
-    """Which steps (N,) are within a burst."""
-    return np.asarray(lasts_s < CLOSE * float(lasts_s.mean()))
-
-
-def _within(stamps_s: FloatArray) -> float:
-    """Share of the time within bursts."""
-    lasts_s = np.diff(stamps_s)
-    return float(np.sum(lasts_s[_close(lasts_s)]) / np.sum(lasts_s))
-
-
-def _finding(file: str, stamps_s: FloatArray, last: IntArray) -> Finding:
+def _finding(file: str, stamps_s: FloatArray, bursts: Bursts) -> Finding:
+    last, within = bursts
     sizes, waits_s = np.diff(last), np.diff(stamps_s)[last[:-1]]
     several = sizes > 1  # of all but the first
     in_each, usual_s = float(sizes[several].mean()), float(np.median(waits_s[several]))
-    within = _within(stamps_s)
     others = (
         RECORDED * (within > AT_ONCE)
         + ROUNDED * (within == 0)
