@@ -42,15 +42,33 @@ def stuck_poses(record: Record) -> BoolArray:
 
 
 def _led(record: Record) -> FloatArray:
-    """How far treads have led up to each pose (M, 2): ahead and in turn, in times of near."""
+    """How far treads have led up to each pose (M, 3): x and y, and in turn, in times of near.
+
+    Poses that stay have one heading, and x is ahead; where yaw is not measured it is that of the
+    gyroscope or of the treads, as a robot that drives round in a small circle stays near a place.
+    """
     steps_s = np.append(np.diff(record.stamps_s), 0.0)
     left, right = record.inputs.tread_speeds_m_s.T * steps_s
-    width_m = WIDTHS * record.run.robot.track_width
-    ahead, turned = ((left + right) / 2 / NEAR_M, (right - left) / width_m / NEAR_RAD)
+    turned_rad = (right - left) / (WIDTHS * record.run.robot.track_width)
+    ahead_m = (left + right) / 2
     if np.isnan(record.poses[:, 2]).any():
-        turned = np.zeros_like(turned)
-    led = np.cumsum(np.column_stack([ahead, turned]), axis=0)
-    return np.asarray(np.vstack([np.zeros(2), led[:-1]])[record.pose_samples])
+        heading_rad = _heading_rad(record, turned_rad)
+        steps = np.stack([ahead_m * np.cos(heading_rad), ahead_m * np.sin(heading_rad)])
+        turned_rad = np.zeros_like(turned_rad)
+    else:
+        steps = np.stack([ahead_m, np.zeros_like(ahead_m)])
+    led = np.cumsum(np.vstack([steps / NEAR_M, turned_rad / NEAR_RAD]).T, axis=0)
+    return np.asarray(np.vstack([np.zeros(3), led[:-1]])[record.pose_samples])
+
+
+def _heading_rad(record: Record, by_treads_rad: FloatArray) -> FloatArray:
+    """Heading (N,) from the first sample on: of the gyroscope where there is one."""
+    measured = record.run.yaw_rate
+    if measured is None:
+        return np.append(0.0, np.cumsum(by_treads_rad[:-1]))
+    steps_rad = measured.yaw_rate_rad_s[:-1] * np.diff(measured.stamps_s)
+    heading_rad = np.append(0.0, np.cumsum(steps_rad))
+    return np.asarray(np.interp(record.stamps_s, measured.stamps_s, heading_rad))
 
 
 def _stay(poses: FloatArray) -> int:
@@ -62,7 +80,8 @@ def _stay(poses: FloatArray) -> int:
 
 
 def _is_led_away(led_times: FloatArray, pose_s: FloatArray) -> bool:
-    """Whether treads lead far from the first of poses (K,) that stay near it, and for long."""
-    led = np.abs(led_times - led_times[0]).max(axis=1)
+    """Whether treads lead far (K, 3) from the first of poses (K,) that stay, and for long."""
+    x, y, turned = (led_times - led_times[0]).T
+    led = np.maximum(np.hypot(x, y), np.abs(turned))
     away = np.flatnonzero(led > 1)
     return bool(len(away)) and bool(led.max() >= TIMES and pose_s[-1] - pose_s[away[0]] >= LEAST_S)

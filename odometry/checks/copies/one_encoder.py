@@ -15,6 +15,7 @@ from odometry.checks.treads.treads import EQUAL
 # 0.97 in 74 real recordings.
 CHANGES, VALUES = 0.9, 0.999
 LEAST_TURN_RAD = 1.0  # range of the heading
+BY_EACH = 0.7  # share of the turns by both treads, from which these are two
 BY_MEAN = 0.9  # share of the turns by the mean speed, from which it may be one circle
 
 
@@ -55,13 +56,20 @@ def _is_exact(found: Repetition) -> bool:
 
 
 def _turned(evidence: Evidence) -> tuple[str, float] | None:
-    """Which sensor turned, and over what range [rad], where no steady circle explains it."""
+    """Which sensor turned, and over what range [rad].
+
+    Where no steady circle explains it, and not the little by which treads differ on a straight
+    drive.
+    """
     for name, turns, motion in (
         ("the gyroscope", evidence.uniform.gyroscope_rad, evidence.uniform),
         ("the poses", evidence.pose_turn_rad, evidence.turn_motion),
     ):
         turned_rad = lasting_turn_rad(turns, motion.lasts_s)
         circle = relation(turns, motion.mean_m, motion.lasts_s)
-        if turned_rad > LEAST_TURN_RAD and circle is not None and circle.explained < BY_MEAN:
+        each = relation(turns, motion.left_m, motion.right_m, motion.lasts_s)
+        if turned_rad < LEAST_TURN_RAD or circle is None or circle.explained > BY_MEAN:
+            continue
+        if each is None or each.explained < BY_EACH:
             return name, turned_rad
     return None

@@ -123,7 +123,7 @@ class CleanedRecording:
         """
         found = motion_between(self.run, self.integrals, self.poses_used)
         for window_s in LONGER_S:
-            if not scattered(found):
+            if not scattered(found, self.run.robot.track_width):
                 break
             found = motion_between(self.run, self.integrals, self.poses_used, window_s)
         return self._without_left_out(found)

@@ -27,6 +27,7 @@ PLACES_LEAVE = 0.85  # share of what one factor leaves that two factors by place
 # By a group of windows: where a robot backs up on straight lines, edges of other turns decide. Two
 # clean drives whose gyroscope seemed to turn 15 and 17 % too much there had turned by 0.8 rad.
 LEAST_TURNED_RAD = 2.0
+TOGETHER = 0.9  # correlation of gyroscope and poses in a group
 Groups = Iterator[tuple[tuple[str, str], BoolArray, BoolArray]]
 
 
@@ -53,12 +54,33 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
 
 def one_side(evidence: Evidence) -> str:
     """Treads of which one turns the robot more than the other: no scale of both."""
-    turn = evidence.gyroscope_by_treads or evidence.pose_turn_by_treads
-    if turn is None or not (turn.certain(0) and turn.certain(1)) or turn.explained < HELD:
+    fits = turns_of_each(evidence)
+    if not fits or not all(f.certain(0) and f.certain(1) and f.explained >= HELD for f in fits):
         return ""
-    ratio = abs(float(turn.coefficients[0] / turn.coefficients[1]))
+    ratio = ratio_of_sides(fits)
     alike = 1 / UNEQUAL < ratio < UNEQUAL
     return "" if alike else f"a metre of the left tread turns it {ratio:.3g} times as much as right"
+
+
+def turns_of_each(evidence: Evidence) -> list[Relation]:
+    """Turn from the travel of each tread: without and with the bias that a gyroscope may have.
+
+    On a drive that is forwards mostly a bias left out is a scale of one tread, and where the treads
+    hardly change the constant that is fitted is one. Empty where turns are not known.
+    """
+    if evidence.gyroscope_by_treads is None:
+        return [] if evidence.pose_turn_by_treads is None else [evidence.pose_turn_by_treads]
+    m = evidence.uniform
+    beside_bias = relation(m.gyroscope_rad, m.left_m, m.right_m, m.lasts_s)
+    return [evidence.gyroscope_by_treads, *([] if beside_bias is None else [beside_bias])]
+
+
+def ratio_of_sides(fits: list[Relation]) -> float:
+    """Turn by a metre of the left tread, in those of the right one: the nearest to 1 by any fit."""
+    ratios = [abs(float(fit.coefficients[0] / fit.coefficients[1])) for fit in fits]
+    if min(ratios) < 1 < max(ratios):
+        return 1.0
+    return min(ratios, key=lambda ratio: abs(np.log(ratio)))
 
 
 def uneven_gyroscope(evidence: Evidence, factor: float) -> str:
@@ -68,10 +90,19 @@ def uneven_gyroscope(evidence: Evidence, factor: float) -> str:
     groups = (
         group
         for group in chain(_of_way(m), _of_rates(m))
-        if all(np.nansum(np.abs(m.gyroscope_rad[rows])) > LEAST_TURNED_RAD for rows in group[1:])
+        if all(_turn_together(m, evidence.pose_turn_rad, rows) for rows in group[1:])
     )
     found = _uneven(groups, *fits, most=ratio_left(factor))
     return f"a radian of the gyroscope is one of the poses times {found}" if found else ""
+
+
+def _turn_together(m: Motion, turned_rad: FloatArray, rows: BoolArray) -> bool:
+    """Whether turns (K,) and the gyroscope go together: noise of slow turns lessens a factor."""
+    one, other = m.gyroscope_rad[rows], turned_rad[rows]
+    known = np.isfinite(one) & np.isfinite(other)
+    if np.sum(np.abs(one[known])) <= LEAST_TURNED_RAD:
+        return False
+    return bool(np.corrcoef(one[known], other[known])[0, 1] > TOGETHER)
 
 
 def uneven_yaw(evidence: Evidence) -> str:

@@ -23,6 +23,9 @@ MOST_TURN_RAD = 1.0  # within a window that has a course
 POOR = 0.75  # concentration; 0.80 and more in recordings whose distances go with the treads
 STEADY = 0.96  # correlation of distances; on ice, where courses leave yaw, it is 0.93 and less
 LEAST_WINDOWS = 20
+# Share of the motion along yaw, beside an arm: 0.6 and more of slow robots that spin, whose course
+# noise hides; 0.1 and less of a yaw that is read the wrong way.
+BY_YAW = 0.5
 HOLDS, MOST_APART_RAD = 0.6, np.radians(25)  # of an offset, and at most, by which parts differ
 SURELY_RAD = np.radians(3)  # standard deviation
 
@@ -122,7 +125,24 @@ def course_apart(evidence: Evidence) -> str:
         return ""
     if distance is None or distance.correlation < STEADY or distance.measured < LEAST_WINDOWS:
         return ""
+    if max(_explained_along_yaw(evidence, heading) for heading in found.values()) > BY_YAW:
+        return ""
     return (
         "the course of pose.csv does not keep to its yaw, though its distances are those of the "
         f"treads (correlation {distance.correlation:.2f})"
     )
+
+
+def _explained_along_yaw(evidence: Evidence, heading: Heading) -> float:
+    """Share of the measured motion that is a constant times the travel and the turn, as yaw turns.
+
+    The constants are complex: an offset of yaw, and an arm, whose way in turns is its own.
+    """
+    m = evidence.motion
+    turn = evidence.turn_rad(m)
+    moved_m = (m.moved_m @ np.array([1, 1j])) * np.exp(-1j * middle_yaw(m, heading))
+    known = np.isfinite(moved_m) & np.isfinite(turn)
+    columns = np.column_stack([m.mean_m, turn])[known]
+    fit, *_ = np.linalg.lstsq(columns.astype(complex), moved_m[known], rcond=None)
+    left = np.sum(np.abs(moved_m[known] - columns @ fit) ** 2)
+    return 1 - float(left / np.sum(np.abs(moved_m[known]) ** 2))

@@ -170,7 +170,7 @@ class Evidence(CleanedRecording):
         sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
         some = np.mean(sharp > 1.0) < MOST_SHARP or np.mean(sharp > 2.0) > 1 - MOST_SHARP
         turning = sharp > (1.0 if some else 2.0)
-        if scattered(m):
+        if scattered(m, self.run.robot.track_width):
             return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
 

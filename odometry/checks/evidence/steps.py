@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import READINGS
+from odometry.checks.evidence.motion import WIDTH
 
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
 JITTER_S = 0.4  # by which poses that came in bursts were late
@@ -14,6 +15,7 @@ SHOWN = 3  # jumps that are named
 BLOCK = 1_000_000  # values whose medians are taken at a time
 NEAR_S, FAR_S = 0.25, 1.25  # of a jump: between them its two sides are compared
 AT_ONCE = 0.5  # share of a jump that one or two steps of the poses themselves hold
+SHARP_RAD = 1.2  # turn from one pose to the next
 BESIDE = 3  # steps, whose median is the rate before and after
 BESIDE_S = 0.5  # and their mean over so long at least: where poses come in bursts, steps are uneven
 
@@ -37,6 +39,17 @@ def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
             np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0),
         ]
     )
+
+
+def sharp_turns_s(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
+    """Spans (S, 2) in which a way between two poses (M,) is so bent that dead reckoning errs."""
+    of = evidence.integrals
+    turn = np.diff(of.gyroscope_rad(stamps_s))
+    by_treads = np.diff(of.right_m(stamps_s) - of.left_m(stamps_s))
+    turn = np.where(np.isfinite(turn), turn, by_treads / (WIDTH * evidence.run.robot.track_width))
+    sharp = np.flatnonzero(np.abs(turn) > SHARP_RAD)
+    reach_s = max(FAR_S, NEAR_S + 3 * float(np.median(np.diff(stamps_s))))
+    return np.stack([stamps_s[sharp] - reach_s, stamps_s[sharp + 1] + reach_s], axis=-1)
 
 
 def without_window_changes(evidence: Evidence, rows: IntArray, positions: FloatArray) -> FloatArray:

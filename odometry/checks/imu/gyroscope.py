@@ -15,7 +15,7 @@ LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
 LEAST_DRIFT_RAD_S, SURELY = 0.01, 2.0  # times what is said of both rates
 CERTAIN = 4.0
-STATIONARY_M_S = 0.005
+STATIONARY_M_S, STATIONARY = 0.005, 0.02  # at most, and of the ordinary fastest speed
 LEAST_STATIONARY_S = 2.0
 CLIPPED = 0.01  # share of rows at the very largest rate
 LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
@@ -73,11 +73,18 @@ def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
     )
 
 
+def measured_bias_rad_s(evidence: Evidence) -> float | None:
+    """Bias [rad/s] by what it reads at rest, else against measured yaw; None without either."""
+    found = stationary_bias(evidence) or _bias_by_poses(evidence)
+    return None if found is None else found[0]
+
+
 def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
     """Bias [rad/s], its standard deviation, and from what: while both treads stand still."""
     assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     stamps_s, rates = evidence.yaw_rate
-    still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) < STATIONARY_M_S
+    still_m_s = min(STATIONARY_M_S, STATIONARY * evidence.fastest_m_s)
+    still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) <= still_m_s
     rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
     settled = still & np.roll(still, 1) & np.roll(still, round(0.5 / max(evidence.period_s, 1e-3)))
     at_rest = rates[settled[rows]]

@@ -104,7 +104,7 @@ def _size(residuals: FloatArray) -> float:
 def _stretched(evidence: Evidence) -> Iterator[Finding]:
     """Distance for each metre of travel that goes with twice the course."""
     m = evidence.motion
-    if len(m) < LEAST_WINDOWS or scattered(m):
+    if len(m) < LEAST_WINDOWS or scattered(m, evidence.run.robot.track_width):
         return
     if evidence.yaw_measured and evidence.heading is None:
         return  # yaw and course part: a sensor far from the centre, or yaw is another

@@ -17,6 +17,7 @@ from odometry.checks.evidence.steps import (
     moments,
     rate_of,
     reckoned,
+    sharp_turns_s,
     step_sizes,
     without_window_changes,
 )
@@ -85,6 +86,7 @@ def jumps(
         step = np.maximum(step - driven_m, 0.0)
     speed = rate_of(travel_m, stamps_s)
     known = np.isfinite(step) & ~within(stamps_s - evidence.run.began_s, _widened(left_out_s))
+    known &= ~within(stamps_s, sharp_turns_s(evidence, stamps_s))
     if known.sum() < LEAST_POSES:
         return
     moving = known & (speed > 0.2 * evidence.fastest_m_s)

@@ -39,6 +39,8 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from repeated or frozen
     yield from pose_bursts(evidence, track)
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
+    known = (stamps_s >= evidence.stamps_s[0]) & (stamps_s <= evidence.stamps_s[-1])  # treads
+    rows, travel_m = rows[known], travel_m[known]
     yield from yaw_jumps(evidence, rows)
     yield from _lever_arm(evidence)
     yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))

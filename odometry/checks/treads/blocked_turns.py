@@ -8,12 +8,14 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.imu.gyroscope import measured_bias_rad_s
 from odometry.checks.treads.tread_motion import BLOCKED, is_read, moves_differently, times
 from odometry.windows.blocked_turns import BLOCKED_S, STANDS
 from odometry.windows.spans import runs_of
 
 TURNS = 0.1  # of the ordinary fastest speed, by which the treads differ in a turn
 TURNED = 0.3  # share of an ideal drive's turn, by which the gyroscope shows one
+MOST_BIAS_RAD_S = 0.03  # of a gyroscope whose bias was not measured
 LEAST_WINDOWS = 4  # elsewhere, in which the gyroscope shows turns
 
 
@@ -26,7 +28,7 @@ def blocked_turns(evidence: Evidence) -> Iterator[Finding]:
     m = evidence.uniform
     if evidence.yaw_rate is None or not len(m):
         return
-    share = _turned_share(evidence, m, m.gyroscope_rad)
+    share = _share_by_gyroscope(evidence, m)
     if np.sum(share > TURNED) < LEAST_WINDOWS:
         return
     on_the_spot = np.abs(m.difference_m) > np.abs(m.mean_m)
@@ -51,6 +53,16 @@ def blocked_turns(evidence: Evidence) -> Iterator[Finding]:
             "Cut the recording with --from and --to",
             tuple(in_run_time),
         )
+
+
+def _share_by_gyroscope(evidence: Evidence, m: Motion) -> FloatArray:
+    """The share (K,) that the gyroscope says; NaN where a bias nobody measured hides slow turns."""
+    bias_rad_s = measured_bias_rad_s(evidence)
+    share = _turned_share(evidence, m, m.gyroscope_rad - (bias_rad_s or 0.0) * m.lasts_s)
+    if bias_rad_s is not None:
+        return share
+    ideal_rad_s = np.abs(m.difference_m) / evidence.run.robot.track_width / m.lasts_s
+    return np.where(TURNED * ideal_rad_s > MOST_BIAS_RAD_S, share, np.nan)
 
 
 def _turned_share(evidence: Evidence, motion: Motion, turn_rad: FloatArray) -> FloatArray:

@@ -4,7 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.evidence.constancy import HELD, UNEQUAL, groups_of_motion
+from odometry.checks.evidence.constancy import (
+    HELD,
+    UNEQUAL,
+    groups_of_motion,
+    ratio_of_sides,
+    turns_of_each,
+)
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import turns_both_ways
 from odometry.checks.evidence.relation import Relation, pieces, relation
@@ -38,7 +44,7 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     yield from twist
     if twist or turn is None:
         return
-    found = list(_offset(evidence)) or list(_unequal(evidence, turn, forward))
+    found = list(_offset(evidence)) or list(_unequal(evidence, forward))
     yield from found or straight_drives(evidence)
 
 
@@ -76,12 +82,15 @@ def _only(forward: Relation, speed: int, rate: int) -> bool:
     return bool(abs(forward.coefficients[rate]) < 0.3 * abs(forward.coefficients[speed]))
 
 
-def _unequal(evidence: Evidence, turn: Relation, forward: Relation | None) -> Iterator[Finding]:
-    if turn.explained < HELD or not (turn.certain(0, TIMES) and turn.certain(1, TIMES)):
+def _unequal(evidence: Evidence, forward: Relation | None) -> Iterator[Finding]:
+    fits = turns_of_each(evidence)
+    if not fits or any(fit.explained < HELD for fit in fits):
         return
-    left, right = np.abs(turn.coefficients)
-    ratio = float(left / right)
-    if 1 / UNEQUAL < ratio < UNEQUAL:
+    if not all(fit.certain(0, TIMES) and fit.certain(1, TIMES) for fit in fits):
+        return
+    left, right = np.abs(fits[0].coefficients)
+    ratio = ratio_of_sides(fits)
+    if 1 / UNEQUAL < ratio < UNEQUAL or not all(_surely(fit) for fit in fits):
         return
     if forward is not None and forward.certain(0, TIMES) and forward.certain(1, TIMES):
         other = float(abs(forward.coefficients[0] / forward.coefficients[1]))
@@ -140,6 +149,12 @@ def _varies(evidence: Evidence, ratio: float) -> str:
     if all(of / np.log(ratio) > LASTING for of in sure):
         return ""
     return "not all the time, or not at each speed and in each direction"
+
+
+def _surely(turn: Relation) -> bool:
+    """Whether the shares of both treads surely differ."""
+    log_ratio, sigma = _log_ratio(turn)
+    return abs(log_ratio) > TIMES * sigma
 
 
 def _log_ratio(turn: Relation) -> tuple[float, float]:

@@ -5,8 +5,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import Heading, middle_yaw
-from odometry.checks.evidence.motion import Motion, motion_between
-from odometry.checks.evidence.relation import Relation
+from odometry.checks.evidence.motion import Motion, motion_between, noise_of_ends
+from odometry.checks.evidence.relation import Relation, relation
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import touched
 
@@ -17,6 +17,7 @@ ARM = 0.3  # of the track width: of an antenna, whose way in turns is its own
 # Share of the motion that is beyond, and of the windows. In 75 real recordings, ice among them, at
 # most 0.02 and 0.06 of both sensors of the turns, or of the way; 0.17 and 0.01 in one.
 SHARE, OFTEN = 0.08, 0.04
+NOISE = 2.0  # standard deviations of a window, by which noise of its two ends may make it longer
 LEAST_WINDOWS = 20
 LEAST_TRAVEL_M = 2.0  # of the treads, all along
 LEAST_FORWARDS = 0.5  # how clearly treads say which way is forwards
@@ -48,7 +49,10 @@ def _measured_turns(evidence: Evidence) -> list[tuple[Motion, FloatArray]]:
     found = []
     if evidence.yaw_rate is not None:
         of = motion_between(evidence.run, evidence.integrals, None, WINDOW_S)
-        found.append((of, evidence.turn_rad(of)))
+        turn_rad = evidence.turn_rad(of)
+        fit = relation(turn_rad, of.difference_m, of.lasts_s)
+        bias_rad_s = 0.0 if fit is None else float(fit.coefficients[1])
+        found += [(of, turn_rad), (of, turn_rad - bias_rad_s * of.lasts_s)]  # with and without one
     if evidence.yaw_measured:
         found.append((evidence.motion, evidence.pose_turn_rad))
     return found
@@ -60,7 +64,8 @@ def _turns_beyond(evidence: Evidence, of: Motion, turn_rad: FloatArray) -> tuple
     left_m, right_m = of.left_m, of.right_m
     most = (np.maximum(right_m, 0.0) - np.minimum(left_m, 0.0)) / width_m
     least = (np.minimum(right_m, 0.0) - np.maximum(left_m, 0.0)) / width_m
-    allowed = STANDS * evidence.fastest_m_s * of.lasts_s / width_m
+    noise_rad = _noise(of, turn_rad, of.difference_m, of.lasts_s)
+    allowed = STANDS * evidence.fastest_m_s * of.lasts_s / width_m + NOISE * noise_rad
     return _beyond(evidence, of, turn_rad, (least, most), allowed)
 
 
@@ -82,8 +87,10 @@ def _way_beyond(evidence: Evidence) -> tuple[float, float]:
         for of_side in (np.maximum, np.minimum)
     )
     turned_m = ARM * evidence.run.robot.track_width * np.abs(evidence.turn_rad(of))
-    allowed = STANDS * evidence.fastest_m_s * of.lasts_s + turned_m
-    return _beyond(evidence, of, _ahead_m(of, heading), (least, most), allowed)
+    ahead_m = _ahead_m(of, heading)
+    noise_m = _noise(of, ahead_m, of.mean_m)
+    allowed = STANDS * evidence.fastest_m_s * of.lasts_s + turned_m + NOISE * noise_m
+    return _beyond(evidence, of, ahead_m, (least, most), allowed)
 
 
 def _ahead_m(of: Motion, heading: Heading) -> FloatArray:
@@ -93,6 +100,12 @@ def _ahead_m(of: Motion, heading: Heading) -> FloatArray:
     """
     off = of.course_rad - middle_yaw(of, heading) - heading.offset_rad
     return np.asarray(of.distance_m * np.cos(off))
+
+
+def _noise(of: Motion, measured: FloatArray, *columns: FloatArray) -> float:
+    """Standard deviation of the measured motion (K,) by noise of poses, beside the columns (K,)."""
+    fit = relation(measured, *columns)
+    return 0.0 if fit is None else noise_of_ends(of, np.where(fit.kept, fit.residuals, np.nan))
 
 
 def _beyond(

@@ -151,9 +151,18 @@ def _likeness(
         pairs = fits[1:] * fits[:-1].conj()
         return _median(pairs.real / np.sqrt(np.maximum(np.abs(pairs), 1e-12))), ALIKE
     difference_m = of.right_m(at_s) - of.left_m(at_s)
-    turns = [difference_m / (width * evidence.run.robot.track_width) for width in WIDTHS]
+    turns = [difference_m / width_m for width_m in _widths_m(evidence)]
     found = (_median(np.abs(_fits(evidence, at_s, measured, turn))) for turn in turns)
     return max(found), ALIKE_BY_TREADS
+
+
+def _widths_m(evidence: Evidence) -> list[float]:
+    """Effective widths that are tried: in long circles that by the course is needed."""
+    widths_m = [width * evidence.run.robot.track_width for width in WIDTHS]
+    by_course = evidence.pose_turn_by_difference
+    if by_course is not None and by_course.certain() and by_course.slope > 0:
+        widths_m.append(1 / by_course.slope)
+    return widths_m
 
 
 def _median(likenesses: FloatArray) -> float:

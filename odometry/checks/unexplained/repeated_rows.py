@@ -8,8 +8,8 @@ from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.relation import relation
 from odometry.windows.spans import touched
 
-# Rows of a stretch, and of them those in which both speeds are new ones. No stretch of 75 real
-# recordings repeats another one.
+# Rows of a stretch, and of them those in which both speeds are new ones, and those that differ: of
+# coarse encoders a few speeds take turns. No stretch of 75 real recordings repeats another one.
 ROWS, CHANGING = 20, 8
 TIMES, LEAST_WINDOWS = 3.0, 4  # the usual residual of turns, and windows that have it
 SEED = 0  # of the weights by which stretches are compared
@@ -41,7 +41,10 @@ def _repeated(speeds: FloatArray) -> IntArray:
     weights = np.random.default_rng(SEED).standard_normal((ROWS, 2))
     sums = sum(speeds[row : row + count] @ weights[row] for row in range(ROWS))
     _, earliest, same = np.unique(sums[first], return_index=True, return_inverse=True)
-    return np.asarray(first[earliest[same] != np.arange(len(first))])
+    again = first[earliest[same] != np.arange(len(first))]
+    both = speeds[:, 0] + 1j * speeds[:, 1]
+    of_rows = np.sort(both[again[:, None] + np.arange(ROWS)], axis=1)
+    return np.asarray(again[(np.diff(of_rows, axis=1) != 0).sum(axis=1) >= CHANGING])
 
 
 def _apart(evidence: Evidence, spans_s: FloatArray) -> list[bool]:

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation
+from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.evidence.turns_in_parts import turns_flip
 from odometry.checks.findings.finding import Finding, Level, disagreement
@@ -85,7 +86,15 @@ def _is_magnitude(evidence: Evidence) -> bool:
     if min(map(len, sides)) < LEAST_WINDOWS:
         return False
     middles = sorted(float(np.median(side)) for side in sides)
-    return middles[0] > ALIKE * middles[1]
+    return middles[0] > ALIKE * middles[1] and _follows_the_size(turns, others, m.lasts_s[known])
+
+
+def _follows_the_size(turns: FloatArray, others: FloatArray, lasts_s: FloatArray) -> bool:
+    """Whether turns (K,) go with the size of others; of slow ones a bias may have the same sign."""
+    signed, size = (relation(turns, of, lasts_s) for of in (others, np.abs(others)))
+    if size is None or not (size.certain() and size.slope > 0):
+        return False
+    return signed is None or size.explained > signed.explained
 
 
 def _moves(found: Relation | None) -> bool:

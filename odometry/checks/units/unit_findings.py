@@ -144,7 +144,7 @@ def beyond_treads(evidence: Evidence) -> float | None:
     arm_m = max(evidence.run.robot.length or 0.0, evidence.run.robot.track_width) / 2
     straight = np.abs(evidence.turn_rad(m)) * arm_m < STRAIGHT * np.abs(m.mean_m)
     found = relation(np.where(straight, m.distance_m, np.nan), np.abs(m.mean_m))
-    if scattered(m) or found is None or found.correlation < STEADY:
+    if scattered(m, evidence.run.robot.track_width) or found is None or found.correlation < STEADY:
         return None
     return found.slope if found.slope - 5 * found.slope_sigma > FARTHEST else None
 
