@@ -23,6 +23,7 @@ from odometry.pose_delay import without_pose_delay
 from odometry.pose_noise import with_pose_noise
 from odometry.run import UNKNOWN, Run
 from odometry.run_span import Span
+from odometry.speed_step import with_speed_step
 from odometry.terrain_sources import NamedTerrain, ReplayedFooting
 from odometry.windows.measured_poses import lacks_yaw
 from terrain.believed_images import as_checked
@@ -199,7 +200,8 @@ def _prepared(
         run = robot_run(run, effects)
     run, late = without_pose_delay(run, config.filter)
     of_filter, noisy = with_pose_noise(run, config.filter)
-    return run, replace(config, filter=of_filter), (*late, *noisy)
+    of_filter, coarse = with_speed_step(run, of_filter)
+    return run, replace(config, filter=of_filter), (*late, *noisy, *coarse)
 
 
 def _contradictions(

@@ -27,6 +27,7 @@ STATE_NAMES = (
     "alpha_left",
     "alpha_right",
 )
+EVEN_S = 0.5
 ICRS, ALPHAS = slice(Y_LEFT, X_ICR + 1), slice(ALPHA_LEFT, ALPHA_LEFT + 2)
 OF_TERRAIN = np.array([*range(9)[ICRS], *range(9)[ALPHAS]])  # what is another on each terrain
 
@@ -131,6 +132,9 @@ class Estimate:
         What the filter noticed at this stamp.
     doubt : Doubt or None
         Where else the robot may be, while poses and treads disagree.
+    even_speeds_m_s : (2,) or None
+        Mean tread speeds up to this stamp, with what effects add; None where speeds do not come
+        in steps.
 
     Examples
     --------
@@ -162,6 +166,16 @@ class Estimate:
     watch: SensorWatch | None = None
     events: tuple[FilterEvent, ...] = ()
     doubt: Doubt | None = None
+    even_speeds_m_s: FloatArray | None = None
+
+    def even_speeds_until(self, stamp_s: float) -> FloatArray:
+        """Mean tread speeds (2,) of the last `EVEN_S` before a stamp, weighed exponentially."""
+        speeds = self.tread_speeds_m_s + self.added_speeds_m_s
+        before = speeds if self.even_speeds_m_s is None else self.even_speeds_m_s
+        if math.isnan(sum(speeds.tolist())):
+            return before
+        share = math.exp((self.stamp_s - stamp_s) / EVEN_S)
+        return share * before + (1 - share) * speeds
 
     @property
     def certain(self) -> "Estimate":

@@ -209,9 +209,8 @@ class Prediction:
         step_s: float,
     ) -> Gaussian:
         speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
-        residual, by_state = tread_yaw_rate(
-            mean, speeds, yaw_rate - float(estimate.added_twist[YAW])
-        )
+        measured = yaw_rate - float(estimate.added_twist[YAW])
+        residual, by_state = tread_yaw_rate(mean, speeds, measured, estimate.even_speeds_m_s)
         # the turn by the treads: that of the gyroscope has their noise in it, and a weight
         # that depends on the noise would bend the width
         variance = tread_variance(

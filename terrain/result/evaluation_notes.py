@@ -32,6 +32,7 @@ HARMLESS = {  # kinds of events after which the estimate is still valid
     DRIFT_FOLLOWED,
     INITIAL_YAW,
     LATER_YAW,
+    "coarse_speeds",
     "gyroscope_bias",
     "gyroscope_bias_changed",
     "gyroscope_held",

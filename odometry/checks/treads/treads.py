@@ -8,12 +8,10 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level
+from odometry.speed_step import speed_step_m_s
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
-DIGITS = 1e-5  # of the fastest speed: less are last digits of ticks over uneven stamps
-LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
 STILL_RAD = 0.1  # range of the heading of a stationary robot
-CHANGING = 0.005
 SATURATED = 0.05  # share of rows at the very largest value
 STRAIGHT, LEAST_TRAVEL, LEAST_WINDOWS = 0.5, 0.3, 8  # windows in which distances are compared
 AS_FAR = 0.03  # by which they may differ: what is clipped by less hardly moves an odometer
@@ -31,7 +29,7 @@ def treads(evidence: Evidence) -> Iterator[Finding]:
 
 def _coarse(evidence: Evidence) -> Iterator[Finding]:
     """Readings that come in large steps, from one to the next and back."""
-    step = _step(evidence)
+    step = speed_step_m_s(evidence.speeds_m_s)
     if step < COARSE / 4 * evidence.fastest_m_s or step == 0:
         return
     much = is_coarse(evidence)
@@ -49,25 +47,7 @@ def _coarse(evidence: Evidence) -> Iterator[Finding]:
 
 def is_coarse(evidence: Evidence) -> bool:
     """Whether the steps are large against the ordinary fastest speed."""
-    return _step(evidence) > COARSE * evidence.fastest_m_s
-
-
-def _step(evidence: Evidence) -> float:
-    """The smaller step of both treads [m/s]; 0 where there is none."""
-    return min(filter(None, map(step_of, evidence.speeds_m_s.T)), default=0.0)
-
-
-def step_of(values: FloatArray) -> float | None:
-    """The step of which all changes are multiples; None where there is none, or few changes."""
-    changes = np.abs(np.diff(values))
-    changes = changes[changes > DIGITS * np.abs(values).max(initial=0.0)]
-    if len(changes) < max(LEAST_CHANGES, CHANGING * len(values)):
-        return None
-    step = float(np.quantile(changes, 0.02))
-    counts = changes / step
-    single = float(np.mean(np.abs(counts - 1) < 0.05))
-    whole = float(np.mean(np.abs(counts - np.round(counts)) < 0.05 + 0.01 * counts))
-    return step if whole > 0.95 and single > 0.1 else None
+    return speed_step_m_s(evidence.speeds_m_s) > COARSE * evidence.fastest_m_s
 
 
 def _saturated(evidence: Evidence) -> Iterator[Finding]:
