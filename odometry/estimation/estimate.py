@@ -132,9 +132,9 @@ class Estimate:
         What the filter noticed at this stamp.
     doubt : Doubt or None
         Where else the robot may be, while poses and treads disagree.
-    even_speeds_m_s : (2,) or None
-        Mean tread speeds up to this stamp, with what effects add; None where speeds do not come
-        in steps.
+    even_speeds_m_s : (2, 2) or None
+        Mean tread speeds up to this stamp, with what effects add, without the last row and with
+        it; None where speeds do not come in steps.
 
     Examples
     --------
@@ -169,13 +169,22 @@ class Estimate:
     even_speeds_m_s: FloatArray | None = None
 
     def even_speeds_until(self, stamp_s: float) -> FloatArray:
-        """Mean tread speeds (2,) of the last `EVEN_S` before a stamp, weighed exponentially."""
+        """Mean tread speeds (2, 2) of `EVEN_S` before the last row up to a stamp, and with it.
+
+        Weighed exponentially. A part of a tick that is left counts in the next row, so that the
+        errors of neighbours go together.
+        """
         speeds = self.tread_speeds_m_s + self.added_speeds_m_s
-        before = speeds if self.even_speeds_m_s is None else self.even_speeds_m_s
+        before = speeds if self.even_speeds_m_s is None else self.even_speeds_m_s[1]
         if math.isnan(sum(speeds.tolist())):
-            return before
+            return np.stack([before, before])
         share = math.exp((self.stamp_s - stamp_s) / EVEN_S)
-        return share * before + (1 - share) * speeds
+        return np.stack([before, share * before + (1 - share) * speeds])
+
+    @property
+    def earlier_speeds_m_s(self) -> FloatArray | None:
+        """Mean tread speeds (2,) without the last row, see `even_speeds_m_s`."""
+        return None if self.even_speeds_m_s is None else self.even_speeds_m_s[0]
 
     @property
     def certain(self) -> "Estimate":

@@ -127,6 +127,7 @@ class Prediction:
         self._use_gyroscope = config.use_gyroscope
         self._track_width = track_width
         self._noise = ProcessNoise(config, track_width)
+        self._of_steps = (config.speed_step_m_s / track_width) ** 2 / 6  # of two rounded speeds
 
     def at(self, frame: Frame, estimate: Estimate) -> Predicted:
         """Predict the state estimate at a frame's stamp from the one before it.
@@ -210,10 +211,10 @@ class Prediction:
     ) -> Gaussian:
         speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
         measured = yaw_rate - float(estimate.added_twist[YAW])
-        residual, by_state = tread_yaw_rate(mean, speeds, measured, estimate.even_speeds_m_s)
+        residual, by_state = tread_yaw_rate(mean, speeds, measured, estimate.earlier_speeds_m_s)
         # the turn by the treads: that of the gyroscope has their noise in it, and a weight
         # that depends on the noise would bend the width
-        variance = tread_variance(
+        variance = self._of_steps + tread_variance(
             estimate.tread_speeds_m_s,
             yaw_rate - residual,
             self._track_width,
