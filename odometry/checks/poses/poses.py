@@ -14,6 +14,7 @@ from odometry.checks.poses.course import OFF_RAD
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
 from odometry.checks.poses.yaw_jumps import yaw_jumps
+from odometry.checks.treads.one_motion import one_motion
 
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
@@ -83,7 +84,12 @@ def _axis_rad(evidence: Evidence) -> float:
 
 
 def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
-    """A sensor far from the centre swings sideways, or forwards, with every turn."""
+    """A sensor far from the centre swings sideways, or forwards, with every turn.
+
+    In circles of one radius a place to the side is a scale of the treads as well.
+    """
+    if any(one_motion(evidence)):
+        return
     m = evidence.motion
     turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad
     across, along = evidence.sideways_m, evidence.forward_m

@@ -16,6 +16,7 @@ from odometry.checks.evidence.motion import turns_both_ways
 from odometry.checks.evidence.relation import Relation, pieces, relation
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import Mend, changed, treads_times
+from odometry.checks.treads.one_motion import one_motion
 from odometry.checks.treads.side_changes import constant_as_well, side_changes
 from odometry.checks.treads.straight_drives import straight_drives
 
@@ -40,7 +41,7 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     """Compare what the left and the right tread add to the way along and to the turn."""
     turn = evidence.gyroscope_by_treads or evidence.pose_turn_by_treads
     forward = evidence.forward_by_treads
-    twist = list(_twist(turn, forward))
+    twist = [] if any(one_motion(evidence)) else list(_twist(turn, forward))
     yield from twist
     if twist or turn is None:
         return
@@ -55,7 +56,8 @@ def _twist(turn: Relation | None, forward: Relation | None) -> Iterator[Finding]
     most = TWIST if forward is None else TWIST_BY_WAY
     for speed, rate, names in ((0, 1, ("v_left", "v_right")), (1, 0, ("v_right", "v_left"))):
         of_speed, of_rate = turn.coefficients[speed], turn.coefficients[rate]
-        if not abs(of_speed) < most * abs(of_rate) or not 0.3 < abs(of_rate) < 1.5:
+        at_most = abs(of_speed) + 2 * turn.sigmas[speed]  # a tread that hardly moves says nothing
+        if not at_most < most * abs(of_rate) or not 0.3 < abs(of_rate) < 1.5:
             continue
         if forward is not None and not _only(forward, speed, rate):
             continue

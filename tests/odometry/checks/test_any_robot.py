@@ -27,6 +27,8 @@ TRUE = {"coarse_speeds", "noisy_positions", "gyroscope_bias", "one_motion", "str
         (96, "poses jump: between two of them the robot turns by 3 rad"),
         (101, "positions are scaled: noise is more than the circle"),
         (164, "the path is another one: many rounds at an unknown width"),
+        (50124, "columns are a twist: it drives one circle"),
+        (50097, "the sensor is far to the side: it drives one circle"),
         (258, "turns are beyond any slip: noise of the gyroscope"),
     ],
 )
