@@ -15,8 +15,9 @@ from odometry.checks.evidence.heading import (
     headings,
     turns_in_radians,
 )
-from odometry.checks.evidence.motion import Integrals, Motion, motion_between, scattered
+from odometry.checks.evidence.motion import Integrals, Motion, motion_between
 from odometry.checks.evidence.relation import Relation, relation
+from odometry.checks.evidence.scatter import scattered
 
 ON_THE_SPOT = 0.3  # share of the difference of the treads: with less in common there is no course
 FAR_SHARE = 0.3  # share of the usual longest distance from which the course of a window is known
@@ -119,8 +120,8 @@ class Evidence(CleanedRecording):
     @cached_property
     def best_concentration(self) -> float | None:
         """Agreement of course and yaw by the best reading of yaw; None with too few windows."""
-        found = headings(self.motion, self.turn_rad(self.motion))
-        return max((heading.concentration for heading in found.values()), default=None)
+        found = headings(self.motion, self.turn_rad(self.motion)).values()
+        return max((heading.concentration for heading in found), default=None)
 
     @cached_property
     def forward_m(self) -> FloatArray:
@@ -165,13 +166,11 @@ class Evidence(CleanedRecording):
     def distance_by_mean(self) -> Relation | None:
         """Distance between positions from the mean travel, both without sign, for lack of yaw."""
         m = self.motion
-        if len(m) == 0:
+        if len(m) == 0 or scattered(m, self.run.robot.track_width):
             return None
         sharp = np.abs(m.difference_m) / np.maximum(np.abs(m.mean_m), 1e-12)
         some = np.mean(sharp > 1.0) < MOST_SHARP or np.mean(sharp > 2.0) > 1 - MOST_SHARP
         turning = sharp > (1.0 if some else 2.0)
-        if scattered(m, self.run.robot.track_width):
-            return None
         return relation(np.where(turning, np.nan, m.distance_m), np.abs(m.mean_m))
 
     @cached_property

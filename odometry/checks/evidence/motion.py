@@ -10,13 +10,10 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.run import Run
 
 WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn
-LEAST_PAIRS = 8
-MOVING = 0.1  # share of the fast windows above which the robot moves
 LONGEST = (
     3.0  # windows longer than this many times WINDOW_S, or the usual pose period, are left out
 )
 
-GENTLE_RAD = 0.5  # turn of a window: two of them hardly differ by it
 WIDTH = 1.8  # track widths, as which a robot turns where no gyroscope says more
 
 
@@ -156,37 +153,6 @@ def motion_between(
     edges_s = np.arange(odometry_s[0], odometry_s[-1], window_s)
     nothing = np.full((max(len(edges_s) - 1, 0), 2), np.nan)
     return _window(edges_s[:-1], edges_s[1:], of, nothing, nothing)
-
-
-def scattered(motion: Motion, width_m: float) -> bool:
-    """Whether noise makes displacements long: they differ from one to the next by as much.
-
-    By windows that are nearly straight; by those of gentle turns where there are hardly any.
-    """
-    if len(motion) < LEAST_PAIRS:
-        return False
-    mean_m = np.abs(motion.mean_m)
-    moving = mean_m > MOVING * np.quantile(mean_m, 0.9)
-    straight = mean_m > np.abs(motion.difference_m)
-    for even in (straight, motion.least_turn_rad(width_m) < GENTLE_RAD):
-        rows = moving & even
-        pairs = rows[1:] & rows[:-1] & (motion.start_s[1:] == motion.end_s[:-1])
-        pairs &= np.isfinite(motion.distance_m[1:] + motion.distance_m[:-1])
-        if pairs.sum() >= LEAST_PAIRS:
-            change = np.hypot(*np.diff(motion.moved_m, axis=0).T)[pairs]
-            return bool(np.median(change) > np.median(motion.distance_m[1:][pairs]))
-    return False
-
-
-def noise_of_ends(motion: Motion, residuals: FloatArray) -> float:
-    """Standard deviation of the motion of windows (K,) by noise of the poses at their ends.
-
-    The noise of a pose makes one window longer and the next one shorter; slip does not. Residuals
-    (K,) are NaN where they do not count.
-    """
-    products = (residuals[1:] * residuals[:-1])[motion.start_s[1:] == motion.end_s[:-1]]
-    known = products[np.isfinite(products)]
-    return float(np.sqrt(2 * max(-np.mean(known), 0.0))) if len(known) else 0.0
 
 
 def turns_both_ways(motion: Motion) -> bool:

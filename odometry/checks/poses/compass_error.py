@@ -8,8 +8,9 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_yaw
 from odometry.checks.evidence.heading_spans import HeadingSpans, heading_spans
-from odometry.checks.evidence.motion import Motion, scattered
+from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.relation import Relation, relation
+from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend, changed
 from odometry.run import Run

@@ -5,8 +5,8 @@ import numpy as np
 from odometry.bags.wheel_names import UNITS
 from odometry.checks.evidence.evidence import CLEARLY, Evidence
 from odometry.checks.evidence.heading import CONSISTENT, headings
-from odometry.checks.evidence.motion import scattered
 from odometry.checks.evidence.relation import relation
+from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import gyroscope_times, times, treads_times
 from odometry.checks.units.unit_tables import (
