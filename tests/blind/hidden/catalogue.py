@@ -2,6 +2,7 @@
 
 from tests.blind.hidden.drives import DRIVES
 from tests.blind.hidden.everyday import EVERYDAY
+from tests.blind.hidden.fieldwork import FIELDWORK
 from tests.blind.hidden.instruments import INSTRUMENTS
 from tests.blind.hidden.kind import Hidden, Kind
 from tests.blind.hidden.mixed import MIXED
@@ -28,6 +29,7 @@ GROUPS = {
     "instruments": INSTRUMENTS,
     "unusual": UNUSUAL,
     "everyday": EVERYDAY,
+    "fieldwork": FIELDWORK,
     "mixed": MIXED,
     "nothing": {
         "nothing": Kind(nothing, ()),
