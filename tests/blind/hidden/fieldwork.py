@@ -67,7 +67,7 @@ def firmware_ramps(rng, scene):
 
 
 def snow_wedge(rng, scene):
-    """Snow gathers before the robot as it drives forward, brakes it, and stays when it backs up."""
+    """Snow gathers as the robot drives forward, brakes it, and is left behind as it backs up."""
     most, length_m = rng.uniform(0.1, 0.4), rng.uniform(0.5, 3.0)
 
     def hide(rng, clock):
