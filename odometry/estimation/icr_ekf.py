@@ -12,6 +12,7 @@ from odometry.estimation.corrections import Correction, added_from, require_corr
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.filter_changes import bias_followed, followed_at_rest
 from odometry.estimation.filter_start import agree, first_belief
+from odometry.estimation.held_update import HeldUpdate
 from odometry.estimation.measured_updates import PoseUpdate, VelocityUpdate
 from odometry.estimation.measurement import Place
 from odometry.estimation.other_places import AGREEING, doubted
@@ -89,6 +90,7 @@ class IcrEkf:
         self._velocity_update = VelocityUpdate(self.config, track_width)
         self._pose_update = PoseUpdate(self.config, track_width, lever_m)
         self._stuck = StuckUpdate(self._pose_update.covariance, lever_m)
+        self._held = HeldUpdate(self._pose_update.covariance, lever_m, self.config.slip_noise)
         self._lever_m = lever_m
 
     def start(self, frame: Frame, terrain: str, *, yaw_sigma_rad: float | None = None) -> Estimate:
@@ -172,6 +174,8 @@ class IcrEkf:
             )
             predicted = predicted._replace(watch=watch._replace(rest=rest))
         if predicted.watch is not None:
+            if predicted.watch.held is not None:
+                after, predicted = self._held.followed(estimate, predicted, frame, terrain, after)
             after, predicted = self._stuck.followed(estimate, predicted, frame, terrain, after)
         belief, watch, of_bias = bias_followed(estimate, predicted, after, frame.stamp_s)
         if watch is not None and predicted.pose is not None and crossing is None:

@@ -163,7 +163,8 @@ class Prediction:
             if watch.contrary is not None and watch.is_contrary:
                 newly_found = not seen.watch.is_contrary
                 belief = contrary_treads.parted(belief, watch.contrary, newly_found=newly_found)
-                watch = watch._replace(slip=None, stuck=None) if newly_found else watch
+                if newly_found:
+                    watch = watch._replace(slip=None, held=None, stuck=None)
             else:
                 belief = tread_watch.parted(belief, watch.treads, newly_stuck=newly_stuck)
         return Predicted(belief, yaw_rate, seen.pose, speeds, watch, events)

@@ -53,11 +53,12 @@ class StuckUpdate:
             State estimate with its pose.
         """
         assert predicted.watch is not None  # noqa: S101 - for the type checker: it has no other
-        watch, pose = predicted.watch.stuck, predicted.pose
+        sensors, pose = predicted.watch, predicted.pose
+        watch = sensors.stuck
         if not frame.in_gap and _is_early(watch, pose, frame.stamp_s):
             return after, predicted
-        cells = None if pose is None else _cells(pose)
-        if watch is not None and _is_over(watch, estimate, frame, terrain, after):
+        cells = None if pose is None else cells_of(pose)
+        if watch is not None and is_over(watch, estimate, frame, terrain, after):
             watch = None
         if watch is not None:
             left, right = (estimate.tread_speeds_m_s + estimate.added_speeds_m_s).tolist()
@@ -66,6 +67,8 @@ class StuckUpdate:
         before = watch
         if watch is not None and cells is not None:
             watch = stuck_watch.with_pose(watch, cells, frame.stamp_s)
+            if watch is None and before is not None and stuck_watch.is_there(before, cells):
+                sensors = sensors._replace(held=sensors.held or before)
         if watch is not None and watch.is_found:
             after = self._held(estimate, watch, pose, after)
         elif before is not None and before.is_found and pose is not None:
@@ -76,7 +79,7 @@ class StuckUpdate:
             watch = stuck_watch.begun(
                 cells, frame.stamp_s, belief, after.scale, scaled, terrain=terrain
             )
-        return after, predicted._replace(watch=SensorWatch(*predicted.watch[:-1], watch))
+        return after, predicted._replace(watch=SensorWatch(*sensors[:-1], watch))
 
     def _held(
         self, estimate: Estimate, watch: StuckWatch, pose: FloatArray | None, after: Seen
@@ -90,9 +93,9 @@ class StuckUpdate:
 
     def _freed(self, watch: StuckWatch, frame: Frame, pose: FloatArray, after: Seen) -> Seen:
         """Where the robot was stuck and a pose is elsewhere: it is there, and nowhere else."""
-        if stuck_watch.is_there(watch, _cells(pose)):
+        if stuck_watch.is_there(watch, cells_of(pose)):
             return after
-        events = (*after.events, *stuck_watch.freed(watch, _cells(pose), frame.stamp_s))
+        events = (*after.events, *stuck_watch.freed(watch, cells_of(pose), frame.stamp_s))
         freed = self._as_before(watch, (after.mean, after.covariance), pose, after)
         return freed._replace(events=events)
 
@@ -104,15 +107,19 @@ class StuckUpdate:
         if pose is not None:
             scaled = self.pose_covariance * watch.scale.pose
             belief = started_anew(belief, pose, scaled, self.lever_m, lost_yaw_rad=0.0)
-        others = tuple(each for each in after.others if each.since_s < watch.since_s)
-        return after._replace(
-            mean=belief[0],
-            covariance=belief[1],
-            refused=(),
-            recent=(),
-            scale=watch.scale,
-            others=others,
-        )
+        return gone_on(watch, belief, after)
+
+
+def gone_on(watch: StuckWatch, belief: Gaussian, after: Seen) -> Seen:
+    """The filter goes on from a belief, and forgets what it had of poses since the watch began."""
+    return after._replace(
+        mean=belief[0],
+        covariance=belief[1],
+        refused=(),
+        recent=(),
+        scale=watch.scale,
+        others=tuple(each for each in after.others if each.since_s < watch.since_s),
+    )
 
 
 def _is_early(watch: StuckWatch | None, pose: FloatArray | None, stamp_s: float) -> bool:
@@ -122,9 +129,7 @@ def _is_early(watch: StuckWatch | None, pose: FloatArray | None, stamp_s: float)
     return not watch.is_found and (pose is None or stamp_s - watch.at_s < stuck_watch.EVERY_S)
 
 
-def _is_over(
-    watch: StuckWatch, estimate: Estimate, frame: Frame, terrain: str, after: Seen
-) -> bool:
+def is_over(watch: StuckWatch, estimate: Estimate, frame: Frame, terrain: str, after: Seen) -> bool:
     """Whether nothing is known of the way since the last pose, or all begins anew."""
     left, right = estimate.tread_speeds_m_s.tolist()
     if frame.in_gap or math.isnan(left + right) or terrain != watch.terrain:
@@ -135,7 +140,8 @@ def _is_over(
     return stand and not watch.is_found
 
 
-def _cells(pose: FloatArray) -> stuck_watch.Pose:
+def cells_of(pose: FloatArray) -> stuck_watch.Pose:
+    """A pose (3,) as a tuple."""
     x, y, yaw = pose.tolist()
     return x, y, yaw
 

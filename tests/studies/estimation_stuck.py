@@ -7,7 +7,8 @@ to 12 s are inserted: treads go on with noise, poses and gyroscope stay with the
 are held once (up to 6 s: the pose of the first moment with another noise); a tread that spins (1.8
 times as fast) and treads that slip (2.2 times) for so long. A row shows what was noticed; how many
 of its deviations a slip factor is off 1 and 10 s after the end, against the same recording
-untouched; and how much larger the deviation of the position is in the half minute after.
+untouched; how much larger the deviation of the position is in the half minute after, and for how
+many seconds after the end it is more than three times as large.
 """
 
 import argparse
@@ -26,6 +27,7 @@ from tests.studies.estimation_recordings import SEVEN
 
 SHORTEST_S, LONGEST_S, LONGEST_HELD_S = 3.0, 12.0, 6.0
 MOVES_M_S = 0.3
+WIDE = 3.0  # times the deviation of the recording untouched
 NOISES = {"x": 0.01, "y": 0.01, "yaw": 0.005, "gyro_z": 0.01}
 SLIP_FACTORS = ("alpha_left", "alpha_right")
 TREADS = ("v_left", "v_right")
@@ -46,7 +48,8 @@ def main():
         plain = outputs_of(run).tables["estimate"]
         for change in (stuck, stuck, held, spinning, slipping):
             begin_s = float(rng.choice(moments))
-            lasts_s = float(rng.uniform(SHORTEST_S, LONGEST_S))
+            longest_s = LONGEST_HELD_S if change is held else LONGEST_S
+            lasts_s = min(float(rng.uniform(SHORTEST_S, LONGEST_S)), longest_s)
             changed, added_s = change(run, begin_s, lasts_s, rng)
             found = outputs_of(changed)
             print(folder.name, change.__name__, *figures(plain, found, begin_s, lasts_s, added_s))
@@ -95,7 +98,7 @@ def _lengthened(table, begin_s, lasts_s, rng):
 def held(run, begin_s, lasts_s, rng):
     """The run with the pose of a moment for a while, with noise; nothing is inserted."""
     stamps_s = run.pose.stamps_s
-    inside = (stamps_s >= begin_s) & (stamps_s < begin_s + min(lasts_s, LONGEST_HELD_S))
+    inside = (stamps_s >= begin_s) & (stamps_s < begin_s + lasts_s)
     columns = {}
     for name in ("x", "y", "yaw"):
         column = run.pose[name].copy()
@@ -139,8 +142,11 @@ def figures(plain, found, begin_s, lasts_s, added_s):
     wider = np.median(
         _sigma_m(after, after["t"][then]) / _sigma_m(plain, after["t"][then] - added_s)
     )
+    later_s = after["t"][after["t"] > end_s]
+    ratios = _sigma_m(after, later_s) / _sigma_m(plain, later_s - added_s)
+    wide_s = np.diff(later_s, append=later_s[-1])[ratios > WIDE].sum()
     noticed = Counter(event["kind"] for event in found.events)
-    return *(f"{each:.2f}" for each in (*off, wider)), dict(sorted(noticed.items()))
+    return *(f"{each:.2f}" for each in (*off, wider, wide_s)), dict(sorted(noticed.items()))
 
 
 def _at(table, stamps_s, name):

@@ -52,6 +52,8 @@ class SensorWatch(NamedTuple):
         speed is known.
     contrary : ContraryTreads or None
         Of the treads against the gyroscope.
+    held : StuckWatch or None
+        Of poses that stay while the gyroscope turns.
     stuck : StuckWatch or None
         Of the poses while the treads drive.
     """
@@ -66,6 +68,7 @@ class SensorWatch(NamedTuple):
     frozen: FrozenTreads | None = None
     slip: SlipWatch | None = None
     contrary: ContraryTreads | None = None
+    held: StuckWatch | None = None
     stuck: StuckWatch | None = None
 
     @property
@@ -186,8 +189,7 @@ def sensed(
     )
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
-    kept = watch.bias, watch.rest, watch.frozen, watch.slip, watch.contrary, watch.stuck
-    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *kept)
+    after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *watch[5:])
     return Sensed(after, begin_s, yaw_rate, pose, events + of_gap, belief, terrain)
 
 

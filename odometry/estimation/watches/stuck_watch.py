@@ -54,6 +54,8 @@ class StuckWatch(NamedTuple):
         Pose to which they have led since, and that when the last pose was there.
     led_m, treads_rad, gyroscope_rad : float
         How far that is, and the turn by either; NaN where no gyroscope measured one.
+    travel_m : float
+        Of the treads since.
     out_s : float
         Stamp since when they have led away; NaN where they have not.
     stayed, away : int
@@ -76,6 +78,7 @@ class StuckWatch(NamedTuple):
     led_m: float = 0.0
     treads_rad: float = 0.0
     gyroscope_rad: float = math.nan
+    travel_m: float = 0.0
     out_s: float = math.nan
     stayed: int = 0
     away: int = 0
@@ -133,6 +136,7 @@ def led_on(
         led_m=math.hypot(x - begin_x, y - begin_y),
         treads_rad=watch.treads_rad + by_treads * lasts_s,
         gyroscope_rad=turned_rad,
+        travel_m=watch.travel_m + (abs(left) + abs(right)) / 2 * lasts_s,
     )
 
 
@@ -143,8 +147,12 @@ def with_pose(watch: StuckWatch, pose: Pose, stamp_s: float) -> StuckWatch | Non
     if not is_there(watch, pose):
         away = watch.away + 1
         return watch._replace(away=away) if watch.is_found and away < IN_A_ROW else None
-    if _is_turned(watch, pose, stamp_s):
-        return None
+    is_turned = by_gyroscope(watch, pose, stamp_s) > watch.near_rad / 2
+    return None if is_turned else at_place(watch, stamp_s)
+
+
+def at_place(watch: StuckWatch, stamp_s: float) -> StuckWatch:
+    """The watch after a pose there."""
     led_times = _led_times(watch)
     if led_times < 1:
         return watch._replace(out_s=math.nan, stayed=0, away=0) if watch.stayed else watch
@@ -166,23 +174,22 @@ def is_there(watch: StuckWatch, pose: Pose) -> bool:
     """Whether a pose is at the place."""
     x, y, _ = watch.place
     is_near = math.hypot(pose[0] - x, pose[1] - y) <= watch.near_m
-    return is_near and abs(_turn_rad(watch, pose)) <= watch.near_rad
+    return is_near and abs(turn_rad(watch, pose)) <= watch.near_rad
 
 
-def _is_turned(watch: StuckWatch, pose: Pose, stamp_s: float) -> bool:
-    """Whether the gyroscope turned and a pose did not: then the pose is held."""
+def by_gyroscope(watch: StuckWatch, pose: Pose, stamp_s: float) -> float:
+    """How far the gyroscope turned and a pose did not for certain [rad]: then the pose is held."""
     if math.isnan(watch.gyroscope_rad):
-        return False
+        return 0.0
     sigma_rad_s = math.sqrt(watch.before[1][GYRO_BIAS, GYRO_BIAS])
     drift_rad = SIGMAS * sigma_rad_s * (stamp_s - watch.since_s)
-    apart_rad = wrap_one(watch.gyroscope_rad - _turn_rad(watch, pose))
-    return abs(apart_rad) > watch.near_rad / 2 + drift_rad
+    return abs(wrap_one(watch.gyroscope_rad - turn_rad(watch, pose))) - drift_rad
 
 
-def _turn_rad(watch: StuckWatch, pose: Pose) -> float:
+def turn_rad(watch: StuckWatch, pose: Pose) -> float:
     """Measured turn to a pose; 0 where none is known."""
-    turn_rad = pose[2] - watch.place[2]
-    return 0.0 if math.isnan(turn_rad) else wrap_one(turn_rad)
+    turned_rad = pose[2] - watch.place[2]
+    return 0.0 if math.isnan(turned_rad) else wrap_one(turned_rad)
 
 
 def where_treads_led(watch: StuckWatch, mean: FloatArray, near: int) -> OtherPlace:
@@ -196,15 +203,23 @@ def freed(watch: StuckWatch, pose: Pose, stamp_s: float) -> tuple[FilterEvent, .
 
     Poses that were held jump: no robot goes farther than its treads.
     """
+    return (held_event(watch, pose, stamp_s),) if jumped(watch, pose) else ended(watch, stamp_s)
+
+
+def jumped(watch: StuckWatch, pose: Pose) -> bool:
+    """Whether a pose jumped from the place: farther than treads can have led since the last."""
     went_m = math.dist(watch.led[:2], watch.led_last[:2])
+    return math.dist(pose[:2], watch.place[:2]) > 2 * watch.near_m + JUMP_TIMES * went_m
+
+
+def held_event(watch: StuckWatch, pose: Pose, stamp_s: float) -> FilterEvent:
+    """Of poses that were held until one elsewhere."""
     jump_m = math.dist(pose[:2], watch.place[:2])
-    if jump_m <= 2 * watch.near_m + JUMP_TIMES * went_m:
-        return ended(watch, stamp_s)
     text = (
         f"{_stayed(watch, stamp_s)}, and jumped by {jump_m:.2f} m then: they were held, and the "
         "estimate stayed with them; the filter learned nothing of it"
     )
-    return (FilterEvent(HELD_POSES, watch.since_s, stamp_s, text, (watch.led_m,)),)
+    return FilterEvent(HELD_POSES, watch.since_s, stamp_s, text, (watch.led_m,))
 
 
 def ended(watch: StuckWatch | None, stamp_s: float) -> tuple[FilterEvent, ...]:

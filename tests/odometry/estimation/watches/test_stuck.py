@@ -109,8 +109,8 @@ def held(driven, lasts=LASTS):
 
 
 def straight(_):
-    """Both treads ahead."""
-    return 0.7, 0.7
+    """Ahead, after slip."""
+    return 0.7 / ALPHAS[0], 0.7 / ALPHAS[1]
 
 
 def test_poses_that_were_held_go_back_to_where_treads_have_led():
