@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from odometry.estimation.watches.held_watch import with_pose
 from tests.odometry.estimation.sensor_drives import (
     ALPHAS,
     drive,
@@ -102,6 +103,18 @@ def test_poses_that_go_on_elsewhere_stay_in_doubt():
     assert "held_poses" not in kinds(estimates)
     assert estimates[END + 100].doubt is not None
     assert np.sqrt(np.trace(estimates[END + 100].covariance[:2, :2])) > 2.5
+
+
+@pytest.mark.parametrize(("slip", "is_there"), [(0.1, False), (10.0, True)])
+def test_a_pose_is_where_treads_led_by_as_much_as_they_slip(slip, is_there):
+    driven = drive(80.0, speeds_of=circling)
+    watch = estimated(driven, held(driven))[END - 1].watch.held
+    before = watch.before[0], watch.before[1] * 1e-6
+    scale = watch.scale._replace(slip_log=math.log(slip))
+    watch = watch._replace(before=before, scale=scale, travel_m=10.0)
+    pose = np.add(watch.led, (1.0, 0.0, 0.0))
+    after = with_pose(watch, pose, watch.at_s, (0.0, 0.0), slip_noise=0.1)
+    assert (after is not None) == is_there
 
 
 def test_one_pose_where_treads_led_is_not_believed():
