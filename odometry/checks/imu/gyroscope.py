@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.gyroscope_bias import bias_by_poses, stationary_bias
 from odometry.checks.evidence.outliers import spikes
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.imu.rate_wander import rate_wander
@@ -15,8 +16,6 @@ LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
 LEAST_DRIFT_RAD_S, SURELY = 0.01, 2.0  # times what is said of both rates
 CERTAIN = 4.0
-STATIONARY_M_S, STATIONARY = 0.005, 0.02  # at most, and of the ordinary fastest speed
-LEAST_STATIONARY_S = 2.0
 CLIPPED = 0.01  # share of rows at the very largest rate
 LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
 HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
@@ -39,7 +38,7 @@ def gyroscope(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _bias(evidence: Evidence) -> Iterator[Finding]:
-    found = stationary_bias(evidence) or _bias_by_poses(evidence)
+    found = stationary_bias(evidence) or bias_by_poses(evidence)
     if found is None or drifts_at_rest(evidence):  # rest and poses contradict each other
         return
     bias, sigma, how = found
@@ -73,45 +72,11 @@ def _turns_at_rest(rate_rad_s: float, how: str) -> Finding:
     )
 
 
-def measured_bias_rad_s(evidence: Evidence) -> float | None:
-    """Bias [rad/s] by what it reads at rest, else against measured yaw; None without either."""
-    found = stationary_bias(evidence) or _bias_by_poses(evidence)
-    return None if found is None else found[0]
-
-
-def stationary_bias(evidence: Evidence) -> tuple[float, float, str] | None:
-    """Bias [rad/s], its standard deviation, and from what: while both treads stand still."""
-    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
-    stamps_s, rates = evidence.yaw_rate
-    still_m_s = min(STATIONARY_M_S, STATIONARY * evidence.fastest_m_s)
-    still = np.abs(evidence.run.odometry.stack("v_left", "v_right")).max(axis=1) <= still_m_s
-    rows = np.clip(np.searchsorted(evidence.stamps_s, stamps_s, side="right") - 1, 0, None)
-    settled = still & np.roll(still, 1) & np.roll(still, round(0.5 / max(evidence.period_s, 1e-3)))
-    at_rest = rates[settled[rows]]
-    lasts_s = len(at_rest) * float(np.median(np.diff(stamps_s)))
-    if lasts_s < LEAST_STATIONARY_S or len(at_rest) < 20:
-        return None
-    middle = float(np.median(at_rest))
-    spread = 1.4826 * float(np.median(np.abs(at_rest - middle)))
-    if spread > 0.05:
-        return None
-    return middle, 4 * spread / np.sqrt(len(at_rest)), f"while stationary ({lasts_s:.1f} s)"
-
-
-def _bias_by_poses(evidence: Evidence) -> tuple[float, float, str] | None:
-    found = evidence.pose_turn_by_gyroscope
-    if found is None or not evidence.yaw_measured:
-        return None
-    if found.correlation < 0.9 or not 0.8 < found.slope < 1.25:
-        return None
-    return -float(found.coefficients[1]), 2 * float(found.sigmas[1]), "more than measured yaw turns"
-
-
 def drifts_at_rest(evidence: Evidence) -> str:
     """Measured yaw that turns steadily against a gyroscope that reads another rate at rest."""
     if evidence.yaw_rate is None or (rest := stationary_bias(evidence)) is None:
         return ""
-    if (by_poses := _bias_by_poses(evidence)) is None:
+    if (by_poses := bias_by_poses(evidence)) is None:
         return ""
     apart = rest[0] - by_poses[0]
     if abs(apart) < LEAST_DRIFT_RAD_S + SURELY * (rest[1] + by_poses[1]):

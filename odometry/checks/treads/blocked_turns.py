@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.gyroscope_bias import measured_bias_rad_s
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.imu.gyroscope import measured_bias_rad_s
 from odometry.checks.treads.tread_motion import BLOCKED, is_read, moves_differently, times
 from odometry.windows.blocked_turns import BLOCKED_S, STANDS
 from odometry.windows.spans import runs_of
