@@ -7,6 +7,7 @@ from odometry.checks.evidence.motion import Motion
 
 LEAST_PAIRS = 8
 MOVING = 0.1  # share of the fast windows above which the robot moves
+ON_THE_SPOT = 0.2  # share of the difference of the treads: with less in common nothing goes ahead
 GENTLE_RAD = 0.5  # turn of a window: two of them hardly differ by it
 # Change from one window to the next, of the usual way: of treads, and of noise (0.6 of its length).
 EVENLY, UNEVENLY = 0.2, 0.4
@@ -25,7 +26,9 @@ def scattered(motion: Motion, width_m: float) -> bool:
     known = np.isfinite(distance_m[1:] + distance_m[:-1])
     known &= motion.start_s[1:] == motion.end_s[:-1]
     straight = mean_m > np.abs(motion.difference_m)
-    for even in (straight, motion.least_turn_rad(width_m) < GENTLE_RAD):
+    gentle = motion.least_turn_rad(width_m) < GENTLE_RAD
+    gentle &= mean_m > ON_THE_SPOT * np.abs(motion.difference_m)
+    for even in (straight, gentle):
         pairs = known & (moving & even)[1:] & (moving & even)[:-1]
         if pairs.sum() >= LEAST_PAIRS:
             change_m = np.hypot(*np.diff(motion.moved_m, axis=0).T)[pairs]

@@ -15,6 +15,7 @@ from odometry.checks.evidence.turn_signs import lasting_turn_rad
 # explained best. Least of 14 and of 12 real recordings, ice and sand among them: 0.90 and 0.93 of
 # the way, 0.84 and 0.83 of turns by treads, 0.93 and 0.96 by the gyroscope.
 WAY, TURNS_BY_TREADS, TURNS_BY_GYROSCOPE, ORDINARY = 0.82, 0.75, 0.87, 0.9
+MOST_NOISE = 0.07  # of a window, m or rad
 OF_NOISE = 0.56  # of its variance that is left in that share of windows, of a normal distribution
 # Share of the sharp turns against the treads, by each sensor: at most 0.06, on ice.
 AGAINST, SHARP = 0.08, 0.3
@@ -91,6 +92,7 @@ def _words(
     known = np.isfinite(found.residuals)
     squares = np.sort(found.residuals[known] ** 2)
     noise = noise_of_ends(m, np.where(found.kept, found.residuals, np.nan))
+    noise *= noise < MOST_NOISE  # more is no noise: rows that are mixed look so, too
     left = float(np.sum(squares[: int(ORDINARY * len(squares))]))
     left -= OF_NOISE * len(squares) * noise**2
     explained = 1 - max(left, 0.0) / float(np.sum(target[known] ** 2))

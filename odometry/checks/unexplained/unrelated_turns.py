@@ -86,15 +86,17 @@ def _is_magnitude(evidence: Evidence) -> bool:
     if min(map(len, sides)) < LEAST_WINDOWS:
         return False
     middles = sorted(float(np.median(side)) for side in sides)
-    return middles[0] > ALIKE * middles[1] and _follows_the_size(turns, others, m.lasts_s[known])
-
-
-def _follows_the_size(turns: FloatArray, others: FloatArray, lasts_s: FloatArray) -> bool:
-    """Whether turns (K,) go with the size of others; of slow ones a bias may have the same sign."""
-    signed, size = (relation(turns, of, lasts_s) for of in (others, np.abs(others)))
-    if size is None or not (size.certain() and size.slope > 0):
+    if middles[0] <= ALIKE * middles[1]:
         return False
-    return signed is None or size.explained > signed.explained
+    return not _is_signed_beside_a_bias(turns, others, m.lasts_s[known])
+
+
+def _is_signed_beside_a_bias(turns: FloatArray, others: FloatArray, lasts_s: FloatArray) -> bool:
+    """Whether turns (K,) go with others better than with their size: slow ones beside a bias."""
+    signed, size = (relation(turns, of, lasts_s) for of in (others, np.abs(others)))
+    if signed is None or not (signed.certain(0, 3.0) and signed.slope > 0):
+        return False
+    return size is None or signed.explained > size.explained
 
 
 def _moves(found: Relation | None) -> bool:
