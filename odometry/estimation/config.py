@@ -48,11 +48,11 @@ class IcrEkfConfig:
     adapt_rate : float
         By which share of itself each pose may change the scales of slip and pose noise; 0 keeps
         them as given.
-    speed_step_m_s : float
-        Of which tread speeds are multiples: ticks in a short time. With 0 it is searched for
-        (`odometry.speed_step`), unless `causal`. Where it is not 0, what the treads' turn says of
-        the ICRs is taken at the mean speeds of the last half second: the steps of single ones
-        would widen y_left - y_right.
+    compare_s : float
+        Over how long what the treads say of the turn is compared with the gyroscope at once; 0
+        compares row by row. Where it is 0 and tread speeds come in steps (few ticks in a short
+        time), `terrain.run_odometry` takes as long as makes them even (`odometry.speed_step`):
+        single rounded speeds would widen y_left - y_right.
     use_gyroscope : bool
         Whether the gyroscope turns the robot where there is one; otherwise the treads do.
     watch_sensors : bool
@@ -101,7 +101,7 @@ class IcrEkfConfig:
     tail_probability: float = 0.95
     gate_patience: int = 10
     adapt_rate: float = 0.02
-    speed_step_m_s: float = 0.0
+    compare_s: float = 0.0
     use_gyroscope: bool = True
     watch_sensors: bool = True
     causal: bool = False
@@ -123,7 +123,7 @@ class IcrEkfConfig:
             "icr_noise_widths",
             "alpha_noise",
             "reset_sigma_alpha",
-            "speed_step_m_s",
+            "compare_s",
         ):
             value = getattr(self, name)
             require(0 <= value <= LARGEST, f"{name} = {value}, expected 0 or more, to {LARGEST:g}")

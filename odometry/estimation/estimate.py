@@ -14,6 +14,7 @@ from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.other_places import Doubt
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
 from odometry.estimation.watches.sensor_watch import SensorWatch
+from odometry.frames import Frame
 from odometry.models.icr import icr_twist
 
 STATE_NAMES = (
@@ -27,9 +28,21 @@ STATE_NAMES = (
     "alpha_left",
     "alpha_right",
 )
-EVEN_S = 0.5
 ICRS, ALPHAS = slice(Y_LEFT, X_ICR + 1), slice(ALPHA_LEFT, ALPHA_LEFT + 2)
 OF_TERRAIN = np.array([*range(9)[ICRS], *range(9)[ALPHAS]])  # what is another on each terrain
+
+
+class ComparedMotion(NamedTuple):
+    """Travel of the treads (2,) with what effects add, turn by the gyroscope, and how long."""
+
+    treads_m: FloatArray
+    turned_rad: float
+    lasts_s: float
+
+    @property
+    def is_known(self) -> bool:
+        """Whether treads and gyroscope were measured all the time."""
+        return math.isfinite(self.turned_rad + sum(self.treads_m.tolist()))
 
 
 @dataclass(frozen=True)
@@ -132,9 +145,8 @@ class Estimate:
         What the filter noticed at this stamp.
     doubt : Doubt or None
         Where else the robot may be, while poses and treads disagree.
-    even_speeds_m_s : (2, 2) or None
-        Mean tread speeds up to this stamp, with what effects add, without the last row and with
-        it; None where speeds do not come in steps.
+    compared_later : ComparedMotion or None
+        Motion since treads and gyroscope were compared; None where each row is.
 
     Examples
     --------
@@ -166,25 +178,25 @@ class Estimate:
     watch: SensorWatch | None = None
     events: tuple[FilterEvent, ...] = ()
     doubt: Doubt | None = None
-    even_speeds_m_s: FloatArray | None = None
+    compared_later: ComparedMotion | None = None
 
-    def even_speeds_until(self, stamp_s: float) -> FloatArray:
-        """Mean tread speeds (2, 2) of `EVEN_S` before the last row up to a stamp, and with it.
+    def motion_until(self, lasts_s: float, yaw_rate_rad_s: float) -> ComparedMotion:
+        """Motion that waits to be compared, and that of a time after this stamp."""
+        treads_m = (self.tread_speeds_m_s + self.added_speeds_m_s) * lasts_s
+        turned_rad = yaw_rate_rad_s * lasts_s
+        if (before := self.compared_later) is not None:
+            treads_m, turned_rad = before.treads_m + treads_m, before.turned_rad + turned_rad
+            lasts_s += before.lasts_s
+        return ComparedMotion(treads_m, turned_rad, lasts_s)
 
-        Weighed exponentially. A part of a tick that is left counts in the next row, so that the
-        errors of neighbours go together.
-        """
-        speeds = self.tread_speeds_m_s + self.added_speeds_m_s
-        before = speeds if self.even_speeds_m_s is None else self.even_speeds_m_s[1]
-        if math.isnan(sum(speeds.tolist())):
-            return np.stack([before, before])
-        share = math.exp((self.stamp_s - stamp_s) / EVEN_S)
-        return np.stack([before, share * before + (1 - share) * speeds])
-
-    @property
-    def earlier_speeds_m_s(self) -> FloatArray | None:
-        """Mean tread speeds (2,) without the last row, see `even_speeds_m_s`."""
-        return None if self.even_speeds_m_s is None else self.even_speeds_m_s[0]
+    def waiting(
+        self, frame: Frame, yaw_rate_rad_s: float, compare_s: float
+    ) -> ComparedMotion | None:
+        """Motion that still waits after a frame; None where each row is compared."""
+        if compare_s == 0 or frame.in_gap:
+            return None
+        motion = self.motion_until(frame.stamp_s - self.stamp_s, yaw_rate_rad_s)
+        return motion if motion.is_known and motion.lasts_s < compare_s else None
 
     @property
     def certain(self) -> "Estimate":

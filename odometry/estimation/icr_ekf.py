@@ -188,8 +188,6 @@ class IcrEkf:
             last = refused[-1] if is_apart else None
             covariance, doubt = doubted(belief, after.others, last, pose_covariance, frame.stamp_s)
         added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
-        coarse = self.config.speed_step_m_s > 0
-        even = estimate.even_speeds_until(frame.stamp_s) if coarse else None
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=belief[0],
@@ -211,7 +209,7 @@ class IcrEkf:
             watch=watch,
             events=predicted.events + after.events + of_bias,
             doubt=doubt,
-            even_speeds_m_s=even,
+            compared_later=estimate.waiting(frame, yaw_rate, self.config.compare_s),
         )
 
 

@@ -121,12 +121,7 @@ def turned_by_treads(mean: FloatArray, left: float, right: float) -> float:
     return float((alpha_right * right - alpha_left * left) / (y_left - y_right))
 
 
-def tread_yaw_rate(
-    mean: FloatArray,
-    tread_speeds: FloatArray,
-    yaw_rate: float,
-    even_speeds: FloatArray | None = None,
-) -> MeasuredNumber:
+def tread_yaw_rate(mean: FloatArray, tread_speeds: FloatArray, yaw_rate: float) -> MeasuredNumber:
     """Of the gyroscope's yaw rate against that of the treads, which has the noise.
 
     Expected of the gyroscope: (alpha_right v_right - alpha_left v_left) / (y_left - y_right)
@@ -139,20 +134,24 @@ def tread_yaw_rate(
         [m/s]
     yaw_rate : float
         [rad/s]
-    even_speeds : (2,) or None
-        Speeds without the noise of `tread_speeds`, at which the derivative is taken (instrumental
-        variables); their noise in both would pull slip factors over the width towards 0.
     """
     left, right = tread_speeds.tolist()
     _, _, _, y_left, y_right, _, bias, alpha_left, alpha_right = mean.tolist()
     width = y_left - y_right
-    turned = omega = (alpha_right * right - alpha_left * left) / width
-    if even_speeds is not None:
-        left, right = even_speeds.tolist()
-        omega = (alpha_right * right - alpha_left * left) / width
+    omega = (alpha_right * right - alpha_left * left) / width
     by_width, by_left, by_right = -omega / width, -left / width, right / width
     by_state = np.array([0.0, 0.0, 0.0, by_width, -by_width, 0.0, 1.0, by_left, by_right])
-    return MeasuredNumber(yaw_rate - turned - bias, by_state)
+    return MeasuredNumber(yaw_rate - omega - bias, by_state)
+
+
+def variance_of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> float:
+    """Variance of the treads' yaw rate by what is not known of slip factors.
+
+    A yaw rate determines slip factors and y_left - y_right only as one ratio: where no pose gave
+    how far the robot moves, it teaches the difference alone.
+    """
+    by_slip = by_state[ALPHA_LEFT:]
+    return float(by_slip.dot(covariance[ALPHA_LEFT:, ALPHA_LEFT:]).dot(by_slip))
 
 
 def velocity_measurement(

@@ -10,7 +10,7 @@ from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
 from odometry.estimation.kalman import bounded, predicted, updated_by_number
-from odometry.estimation.measurement import Gaussian, tread_yaw_rate
+from odometry.estimation.measurement import Gaussian, tread_yaw_rate, variance_of_slip_factors
 from odometry.estimation.noise_scale import huber_factor, tread_variance
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
 from odometry.estimation.watches import contrary_treads, sensor_watch, tread_watch
@@ -127,7 +127,7 @@ class Prediction:
         self._use_gyroscope = config.use_gyroscope
         self._track_width = track_width
         self._noise = ProcessNoise(config, track_width)
-        self._of_steps = (config.speed_step_m_s / track_width) ** 2 / 6  # of two rounded speeds
+        self._compare_s = config.compare_s
 
     def at(self, frame: Frame, estimate: Estimate) -> Predicted:
         """Predict the state estimate at a frame's stamp from the one before it.
@@ -210,13 +210,21 @@ class Prediction:
         yaw_rate: float,
         step_s: float,
     ) -> Gaussian:
-        speeds = estimate.tread_speeds_m_s + estimate.added_speeds_m_s
-        measured = yaw_rate - float(estimate.added_twist[YAW])
-        residual, by_state = tread_yaw_rate(mean, speeds, measured, estimate.earlier_speeds_m_s)
+        recorded = estimate.tread_speeds_m_s
+        speeds = recorded + estimate.added_speeds_m_s
+        if self._compare_s > 0:
+            motion = estimate.motion_until(step_s, yaw_rate)
+            if motion.lasts_s < self._compare_s:
+                return mean, covariance
+            step_s, yaw_rate = motion.lasts_s, motion.turned_rad / motion.lasts_s
+            recorded = speeds = motion.treads_m / step_s
+        residual, by_state = tread_yaw_rate(
+            mean, speeds, yaw_rate - float(estimate.added_twist[YAW])
+        )
         # the turn by the treads: that of the gyroscope has their noise in it, and a weight
         # that depends on the noise would bend the width
-        variance = self._of_steps + tread_variance(
-            estimate.tread_speeds_m_s,
+        variance = tread_variance(
+            recorded,
             yaw_rate - residual,
             self._track_width,
             estimate.scale.slip,
@@ -226,7 +234,7 @@ class Prediction:
         expected = float(by_state.dot(shared))
         variance *= huber_factor(residual, expected + variance)
         if estimate.scale.weighed is None:
-            variance += _of_slip_factors(by_state, covariance)
+            variance += variance_of_slip_factors(by_state, covariance)
             by_state[ALPHA_LEFT:] = 0.0
             shared = covariance.dot(by_state)
             expected = float(by_state.dot(shared))
@@ -239,13 +247,3 @@ class Prediction:
 def _alpha_walk(estimate: Estimate) -> float:
     watch = None if estimate.watch is None else estimate.watch.slip
     return 1.0 if watch is None else watch.walk(estimate.stamp_s)
-
-
-def _of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> float:
-    """Variance of the treads' yaw rate by what is not known of slip factors.
-
-    A yaw rate determines slip factors and y_left - y_right only as one ratio: where no pose gave
-    how far the robot moves, it teaches the difference alone.
-    """
-    by_slip = by_state[ALPHA_LEFT:]
-    return float(by_slip.dot(covariance[ALPHA_LEFT:, ALPHA_LEFT:]).dot(by_slip))

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import IcrEkfConfig
-from odometry.estimation.measurement import tread_yaw_rate
 from odometry.speed_step import speed_step_m_s, with_speed_step
 from terrain.main_job import run_odometry
 from tests.odometry.checks.drives import PERIOD_S, WIDTH_M, drive
@@ -42,20 +41,12 @@ def test_a_step_is_found_where_there_is_one():
     assert speed_step_m_s(run.odometry.stack("v_left", "v_right")) == 0.0
     assert with_speed_step(run, IcrEkfConfig()) == (IcrEkfConfig(), ())
     taken, _ = with_speed_step(in_steps(run), IcrEkfConfig())
-    assert taken.speed_step_m_s == pytest.approx(STEP_M_S)
+    assert taken.compare_s == pytest.approx(0.5, rel=0.1)
 
 
 @pytest.mark.parametrize(
-    "settings", [{"speed_step_m_s": 0.2}, {"causal": True}, {"watch_sensors": False}]
+    "settings", [{"compare_s": 0.2}, {"causal": True}, {"watch_sensors": False}]
 )
 def test_a_step_that_is_stated_and_a_filter_that_does_not_look_stay_as_they_are(settings):
     config = IcrEkfConfig(**settings)
     assert with_speed_step(in_steps(lanes()), config) == (config, ())
-
-
-def test_the_derivative_is_taken_at_even_speeds():
-    mean = np.array([0.0, 0.0, 0.0, 0.3, -0.35, 0.05, 0.01, 0.95, 0.9])
-    speeds, even = np.array([0.4, 0.9]), np.array([0.5, 0.7])
-    at_speeds, at_even = (tread_yaw_rate(mean, speeds, 0.6, of) for of in (None, even))
-    assert at_even.residual == at_speeds.residual
-    assert np.array_equal(at_even.by_state, tread_yaw_rate(mean, even, 0.6).by_state)
