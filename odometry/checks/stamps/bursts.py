@@ -88,6 +88,8 @@ def _bursts(stamps_s: FloatArray) -> Bursts | None:
     within = float(np.sum(lasts_s[close]) / np.sum(lasts_s))
     if close.mean() < MOST_CLOSE or len(last) <= OFTEN or within > NOW_AND_THEN:
         return None
+    if np.sum(np.diff(last) > 1) < OFTEN / 2:
+        return None  # a log of changes: a few quick ones, and single rows far apart
     return Bursts(np.asarray(last), within) if _steady(stamps_s, last) else None
 
 
