@@ -102,6 +102,8 @@ def _turn_together(m: Motion, turned_rad: FloatArray, rows: BoolArray) -> bool:
     known = np.isfinite(one) & np.isfinite(other)
     if np.sum(np.abs(one[known])) <= LEAST_TURNED_RAD:
         return False
+    if min(np.ptp(one[known]), np.ptp(other[known])) == 0:
+        return False  # no change, by which a factor beside a bias could be known
     return bool(np.corrcoef(one[known], other[known])[0, 1] > TOGETHER)
 
 

@@ -36,11 +36,11 @@ def scattered(motion: Motion, width_m: float) -> bool:
     pairs = known & moving[1:] & moving[:-1]
     if pairs.sum() < LEAST_PAIRS:
         return False
-    by_treads, measured = (
-        np.median(np.abs(np.diff(way_m))[pairs]) / np.median(way_m[1:][pairs])
+    (by_treads_m, even_m), (measured_m, usual_m) = (
+        (np.median(np.abs(np.diff(way_m))[pairs]), np.median(way_m[1:][pairs]))
         for way_m in (mean_m, distance_m)
     )
-    return bool(by_treads < EVENLY and measured > UNEVENLY)
+    return bool(by_treads_m < EVENLY * even_m and measured_m > UNEVENLY * usual_m)
 
 
 def noise_of_ends(motion: Motion, residuals: FloatArray) -> float:

@@ -44,10 +44,10 @@ def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
 def sharp_turns_s(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
     """Spans (S, 2) in which a way between two poses (M,) is so bent that dead reckoning errs."""
     of = evidence.integrals
-    turn = np.diff(of.gyroscope_rad(stamps_s))
-    by_treads = np.diff(of.right_m(stamps_s) - of.left_m(stamps_s))
-    turn = np.where(np.isfinite(turn), turn, by_treads / (WIDTH * evidence.run.robot.track_width))
-    sharp = np.flatnonzero(np.abs(turn) > SHARP_RAD)
+    by_treads_m = np.diff(of.right_m(stamps_s) - of.left_m(stamps_s))
+    by_treads = by_treads_m / (WIDTH * evidence.run.robot.track_width)
+    least = np.fmin(np.abs(np.diff(of.gyroscope_rad(stamps_s))), np.abs(by_treads))
+    sharp = np.flatnonzero(least > SHARP_RAD)
     reach_s = max(FAR_S, NEAR_S + 3 * float(np.median(np.diff(stamps_s))))
     return np.stack([stamps_s[sharp] - reach_s, stamps_s[sharp + 1] + reach_s], axis=-1)
 
