@@ -32,7 +32,7 @@ def with_speed_step(run: Run, config: IcrEkfConfig) -> tuple[IcrEkfConfig, tuple
     if not step_m_s > MATTERS * fastest_m_s:
         return config, ()
     period_s = float(np.median(np.diff(stamps_s)))
-    compare_s = min(period_s * step_m_s / (EVEN * fastest_m_s), LONGEST_S)
+    compare_s = round(min(period_s * step_m_s / (EVEN * fastest_m_s), LONGEST_S), 3)
     event = FilterEvent(
         "coarse_speeds",
         float(stamps_s[0]),
