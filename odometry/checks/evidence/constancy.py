@@ -9,6 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.motion import Motion
+from odometry.checks.evidence.once import once
 from odometry.checks.evidence.relation import Relation, relation
 
 MOVING = 0.1  # of the ordinary fastest window
@@ -62,6 +63,7 @@ def one_side(evidence: Evidence) -> str:
     return "" if alike else f"a metre of the left tread turns it {ratio:.3g} times as much as right"
 
 
+@once
 def turns_of_each(evidence: Evidence) -> list[Relation]:
     """Turn from the travel of each tread: without and with the bias that a gyroscope may have.
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
 from odometry.checks.evidence.motion import Motion
+from odometry.checks.evidence.relation import Relation
 
 LEAST_PAIRS = 8
 MOVING = 0.1  # share of the fast windows above which the robot moves
@@ -43,12 +43,13 @@ def scattered(motion: Motion, width_m: float) -> bool:
     return bool(by_treads_m < EVENLY * even_m and measured_m > UNEVENLY * usual_m)
 
 
-def noise_of_ends(motion: Motion, residuals: FloatArray) -> float:
+def noise_of_ends(motion: Motion, fit: Relation) -> float:
     """Standard deviation of the motion of windows (K,) by noise of the poses at their ends.
 
-    The noise of a pose makes one window longer and the next one shorter; slip does not. Residuals
-    (K,) are NaN where they do not count.
+    The noise of a pose makes one window longer and the next one shorter; slip does not. It is taken
+    from what a relation leaves of the measured motion, without outliers.
     """
-    products = (residuals[1:] * residuals[:-1])[motion.start_s[1:] == motion.end_s[:-1]]
+    left = np.where(fit.kept, fit.residuals, np.nan)
+    products = (left[1:] * left[:-1])[motion.start_s[1:] == motion.end_s[:-1]]
     known = products[np.isfinite(products)]
     return float(np.sqrt(2 * max(-np.mean(known), 0.0))) if len(known) else 0.0

@@ -14,7 +14,7 @@ from odometry.checks.poses.course import OFF_RAD
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
 from odometry.checks.poses.yaw_jumps import yaw_jumps
-from odometry.checks.treads.one_motion import one_motion
+from odometry.checks.treads.one_motion import motion_alone
 
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has
@@ -88,7 +88,7 @@ def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
 
     In circles of one radius a place to the side is a scale of the treads as well.
     """
-    if any(one_motion(evidence)):
+    if motion_alone(evidence) is not None:
         return
     m = evidence.motion
     turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad

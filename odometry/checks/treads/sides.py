@@ -16,7 +16,7 @@ from odometry.checks.evidence.motion import turns_both_ways
 from odometry.checks.evidence.relation import Relation, pieces, relation
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import Mend, changed, treads_times
-from odometry.checks.treads.one_motion import one_motion
+from odometry.checks.treads.one_motion import motion_alone
 from odometry.checks.treads.side_changes import constant_as_well, side_changes
 from odometry.checks.treads.straight_drives import straight_drives
 
@@ -41,7 +41,7 @@ def sides(evidence: Evidence) -> Iterator[Finding]:
     """Compare what the left and the right tread add to the way along and to the turn."""
     turn = evidence.gyroscope_by_treads or evidence.pose_turn_by_treads
     forward = evidence.forward_by_treads
-    twist = [] if any(one_motion(evidence)) else list(_twist(turn, forward))
+    twist = list(_twist(turn, forward)) if motion_alone(evidence) is None else []
     yield from twist
     if twist or turn is None:
         return

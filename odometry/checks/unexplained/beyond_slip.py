@@ -106,7 +106,7 @@ def _ahead_m(of: Motion, heading: Heading) -> FloatArray:
 def _noise(of: Motion, measured: FloatArray, *columns: FloatArray) -> float:
     """Standard deviation of the measured motion (K,) by noise of poses, beside the columns (K,)."""
     fit = relation(measured, *columns)
-    return 0.0 if fit is None else noise_of_ends(of, np.where(fit.kept, fit.residuals, np.nan))
+    return 0.0 if fit is None else noise_of_ends(of, fit)
 
 
 def _beyond(

@@ -91,7 +91,7 @@ def _words(
         return
     known = np.isfinite(found.residuals)
     squares = np.sort(found.residuals[known] ** 2)
-    noise = noise_of_ends(m, np.where(found.kept, found.residuals, np.nan))
+    noise = noise_of_ends(m, found)
     noise *= noise < MOST_NOISE  # more is no noise: rows that are mixed look so, too
     left = float(np.sum(squares[: int(ORDINARY * len(squares))]))
     left -= OF_NOISE * len(squares) * noise**2
