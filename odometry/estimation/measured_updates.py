@@ -12,7 +12,14 @@ from odometry.estimation.course import Course
 from odometry.estimation.estimate import OF_TERRAIN, Estimate, Innovation
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.filter_start import agree, new_start_event, searched, started_anew
-from odometry.estimation.kalman import bounded, gate_threshold, updated
+from odometry.estimation.kalman import (
+    UNKNOWN_RAD,
+    Updated,
+    bounded,
+    gate_threshold,
+    updated,
+    updated_beside,
+)
 from odometry.estimation.measurement import (
     Gaussian,
     Measurement,
@@ -24,6 +31,8 @@ from odometry.estimation.noise_scale import NoiseScale, adapted, velocity_varian
 from odometry.estimation.other_places import Others, left, return_event, returned, watched
 from odometry.estimation.transition import YAW
 from odometry.frames import Frame
+
+OF_POSITION = 2  # numbers of a pose without yaw
 
 
 class Seen(NamedTuple):
@@ -129,7 +138,7 @@ class PoseUpdate:
         frame: Frame,
         recent: tuple[float, ...],
     ) -> Seen:
-        mean, covariance, squared, weighed = updated(belief, measured)
+        mean, covariance, squared, weighed = _updated(belief, measured)
         size, scale = len(measured.residual), estimate.scale
         jumped, gate = False, self._gates[size]
         accepted = squared <= gate
@@ -156,7 +165,7 @@ class PoseUpdate:
         if jumped or squared > self._tails[size]:
             factor = max(1.0, squared / self._tails[size])
             heavy = measured._replace(covariance=measured.covariance * factor)
-            mean, covariance, _, _ = updated(belief, heavy)
+            mean, covariance, _, _ = _updated(belief, heavy)
         mean, covariance = bounded(mean, covariance, self._track_width)
         return Seen(mean, covariance, innovation, (), recent, jumped, scale, None)
 
@@ -166,6 +175,17 @@ class PoseUpdate:
         covariance[OF_TERRAIN], covariance[:, OF_TERRAIN] = 0.0, 0.0
         covariance[OF_TERRAIN, OF_TERRAIN] = self._reset_variances
         return belief[0], covariance
+
+
+def _updated(belief: Gaussian, measured: Measurement) -> Updated:
+    """As of `updated`; positions teach no ICRs and slip factors where the heading is not known.
+
+    A way along a wrong heading is measured too short, by the cosine of the error, whatever its
+    sign: linearised, the robot would have slipped.
+    """
+    if len(measured.residual) == OF_POSITION and belief[1][YAW, YAW] > UNKNOWN_RAD**2:
+        return updated_beside(belief, measured, OF_TERRAIN)
+    return updated(belief, measured)
 
 
 def _are_contrary(estimate: Estimate) -> bool:

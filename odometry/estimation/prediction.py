@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.estimate import ALPHAS, ICRS, Estimate
-from odometry.estimation.kalman import bounded, predicted, updated_by_number
+from odometry.estimation.kalman import UNKNOWN_RAD, bounded, predicted, updated_by_number
 from odometry.estimation.measurement import Gaussian, tread_yaw_rate, variance_of_slip_factors
 from odometry.estimation.noise_scale import huber_factor, tread_variance
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X, Y, transition
@@ -233,7 +233,7 @@ class Prediction:
         shared = covariance.dot(by_state)
         expected = float(by_state.dot(shared))
         variance *= huber_factor(residual, expected + variance)
-        if estimate.scale.weighed is None:
+        if estimate.scale.weighed is None or covariance[YAW, YAW] > UNKNOWN_RAD**2:
             variance += variance_of_slip_factors(by_state, covariance)
             by_state[ALPHA_LEFT:] = 0.0
             shared = covariance.dot(by_state)

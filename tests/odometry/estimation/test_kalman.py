@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import EstimationError
-from odometry.estimation.kalman import predicted, updated, updated_by_number
+from odometry.estimation.kalman import predicted, updated, updated_beside, updated_by_number
 from odometry.estimation.measurement import Measurement
 from odometry.estimation.transition import STATES
 
@@ -58,6 +58,30 @@ def test_an_update_is_filterpys(seed, size):
     np.testing.assert_allclose(after.weighed, ekf.SI @ ekf.y, rtol=1e-6)
     assert after.squared == pytest.approx(ekf.y @ ekf.SI @ ekf.y, rel=1e-6)
     assert np.array_equal(after.covariance, after.covariance.T)
+
+
+@given(seeds, sizes)
+def test_states_that_are_kept_count_for_what_is_expected(seed, size):
+    belief, measured, _ = drawn(seed, size)
+    mean, covariance = belief
+    kept = np.array([3, 4, 5, 7, 8])
+    after = updated_beside(belief, measured, kept)
+    assert_alike(
+        updated_beside(belief, measured, kept[:0]).covariance, updated(belief, measured).covariance
+    )
+    assert np.array_equal(after.mean[kept], mean[kept])
+    of_kept = np.ix_(kept, kept)
+    np.testing.assert_allclose(
+        after.covariance[of_kept], covariance[of_kept], rtol=1e-9, atol=1e-12
+    )
+    # the error of the others after the same gain, over draws of the state and of the noise
+    gain = covariance @ measured.jacobian.T
+    gain = gain @ np.linalg.inv(measured.jacobian @ gain + measured.covariance)
+    gain[kept] = 0.0
+    np.testing.assert_allclose(after.mean, mean + gain @ measured.residual, rtol=1e-6, atol=1e-8)
+    stays = np.eye(STATES) - gain @ measured.jacobian
+    roots = np.hstack([stays @ np.linalg.cholesky(covariance), gain @ np.sqrt(measured.covariance)])
+    assert_alike(after.covariance, roots @ roots.T)
 
 
 @given(seeds)
