@@ -11,6 +11,7 @@ from odometry.checks.findings.finding import Finding, Level
 
 NOISY_M = 0.15
 EVEN = 1 / 3  # of the second differences of positions, by how evenly the treads drove
+TWICE = 2.0  # as uneven as the treads drove: no slip makes positions so
 FEWEST = 20  # second differences with known treads
 
 
@@ -51,12 +52,15 @@ def position_noise_m(
         return None
     even = uneven_m <= np.nanquantile(uneven_m, EVEN)
     second = np.diff(positions, n=2, axis=0)[even]
-    sigma = 1.4826 * float(np.median(np.abs(second))) / math.sqrt(6.0)
+    of_second = 1.4826 * float(np.median(np.abs(second)))  # of one axis, as `driving` below
     scale = evidence.metres_per_metre or 1.0
-    driving_m = scale * float(np.median(uneven_m[even]))
+    driving = scale * float(np.median(uneven_m[even])) / math.sqrt(2.0)
     if not 1 / 30 < scale < 30:  # in another unit: which of both is, is not known here
-        sigma, driving_m = min(sigma, sigma / scale), 0.0
-    return sigma if sigma > NOISY_M and sigma > driving_m else None
+        of_second, driving = min(of_second, of_second / scale), 0.0
+    if of_second <= TWICE * driving:
+        return None
+    sigma = math.sqrt((of_second**2 - driving**2) / 6.0)
+    return sigma if sigma > NOISY_M else None
 
 
 def _unevenness_m(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
