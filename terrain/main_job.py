@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from odometry.effects.catalogue import added_effects
 from odometry.effects.corrected import Added
-from odometry.effects.measured import robot_run, shared_measurement
+from odometry.effects.measured import shared_measurement
 from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
-from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, withhold
@@ -19,13 +18,10 @@ from odometry.learned_parameters import learned_parameters
 from odometry.modes.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
-from odometry.pose_delay import without_pose_delay
-from odometry.pose_noise import with_pose_noise
+from odometry.preparation.prepared import prepared_run
 from odometry.run import UNKNOWN, Run
 from odometry.run_span import Span
-from odometry.speed_step import with_speed_step
 from odometry.terrain_sources import NamedTerrain, ReplayedFooting
-from odometry.windows.measured_poses import lacks_yaw
 from terrain.believed_images import as_checked
 from terrain.checks.recording import checked_run
 from terrain.config import Config
@@ -131,7 +127,8 @@ def run_odometry(
         parameters = read_parameters(parameters) if parameters else ParameterSet()
     initial = initial_terrain(terrain, parameters, run.terrain)
     corrections = corrections_of(run, parameters)
-    run, config, noticed = _prepared(run, parameters, config)
+    run, of_filter, noticed = prepared_run(run, config.filter, _sensor_effects(parameters))
+    config = replace(config, filter=of_filter)
     lever_m = run.sensors.pose_m[:2] if run.sensors.pose_m else (0.0, 0.0)
     trained = _trained(model) if name == "camera" else None
     reader: Classifier | None = trained
@@ -188,20 +185,6 @@ def run_odometry(
         differing,
         report,
     )
-
-
-def _prepared(
-    run: Run, parameters: ParameterSet, config: Config
-) -> tuple[Run, Config, tuple[FilterEvent, ...]]:
-    """The run and the settings of its filter, by what its poses show, and what was noticed."""
-    effects = _sensor_effects(parameters)
-    # the filter itself undoes the lever arm of positions, and in time of all poses
-    if effects or not (config.filter.causal or lacks_yaw(run)):
-        run = robot_run(run, effects)
-    run, late = without_pose_delay(run, config.filter)
-    of_filter, noisy = with_pose_noise(run, config.filter)
-    of_filter, coarse = with_speed_step(run, of_filter)
-    return run, replace(config, filter=of_filter), (*late, *noisy, *coarse)
 
 
 def _contradictions(

@@ -13,7 +13,12 @@ class IcrEkfConfig:
     ----------
     position_sigma_m, yaw_sigma_rad : float
         Standard deviation of a measured pose. Where the positions of a recording scatter by
-        more for certain, `terrain.run_odometry` takes that (`odometry.pose_noise`).
+        more for certain, `terrain.run_odometry` takes that (`odometry.preparation.pose_noise`).
+    lasting_sigma_m : float
+        Standard deviation of errors of positions that last for a minute and more (satellites,
+        reflections): the covariance of an estimate holds them, the filter goes on without. Where
+        it is 0 and positions scatter for certain, `terrain.run_odometry` takes what the recording
+        shows of them.
     velocity_sigma_m_s, yaw_rate_sigma_rad_s : float
         Standard deviation of a measured velocity.
     pose_delay_s : float
@@ -84,6 +89,7 @@ class IcrEkfConfig:
 
     position_sigma_m: float = 0.05
     yaw_sigma_rad: float = 0.05
+    lasting_sigma_m: float = 0.0
     pose_delay_s: float = 0.0
     velocity_sigma_m_s: float = 0.05
     yaw_rate_sigma_rad_s: float = 0.02
@@ -113,6 +119,7 @@ class IcrEkfConfig:
         positive = ("position_sigma_m", "yaw_sigma_rad", "velocity_sigma_m_s")
         require_positive(self, *positive, "yaw_rate_sigma_rad_s", "reset_sigma_widths")
         for name in (
+            "lasting_sigma_m",
             "pose_delay_s",
             "position_noise",
             "yaw_noise",

@@ -15,7 +15,7 @@ from odometry.estimation.filter_start import agree, first_belief
 from odometry.estimation.held_update import HeldUpdate
 from odometry.estimation.measured_updates import PoseUpdate, VelocityUpdate
 from odometry.estimation.measurement import Place
-from odometry.estimation.other_places import AGREEING, doubted
+from odometry.estimation.other_places import AGREEING, Covered, doubted, with_lasting_errors
 from odometry.estimation.prediction import Prediction
 from odometry.estimation.stuck_update import StuckUpdate
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
@@ -119,10 +119,12 @@ class IcrEkf:
             yaw_sigma_rad=yaw_sigma_rad,
         )
         added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
+        covariance, doubt = with_lasting_errors(belief, (belief[1], None), config.lasting_sigma_m)
         return Estimate(
             stamp_s=frame.stamp_s,
             mean=belief[0],
-            covariance=belief[1],
+            covariance=covariance,
+            doubt=doubt,
             tread_speeds_m_s=frame.tread_speeds_m_s,
             terrain=terrain,
             added_speeds_m_s=added_speeds,
@@ -181,12 +183,13 @@ class IcrEkf:
         if watch is not None and predicted.pose is not None and crossing is None:
             slip = slip_watch.watched(watch.slip, belief, frame.stamp_s, terrain)
             watch = watch if slip is watch.slip else watch._replace(slip=slip)
-        covariance, doubt = belief[1], None
+        covered: Covered = belief[1], None
         if self.config.watch_sensors and (after.others or after.refused):
             pose_covariance, refused = self._pose_update.covariance, after.refused
             is_apart = len(refused) >= AGREEING and agree(refused, pose_covariance)
             last = refused[-1] if is_apart else None
-            covariance, doubt = doubted(belief, after.others, last, pose_covariance, frame.stamp_s)
+            covered = doubted(belief, after.others, last, pose_covariance, frame.stamp_s)
+        covariance, doubt = with_lasting_errors(belief, covered, self.config.lasting_sigma_m)
         added_speeds, added_twist = added_from(self.corrections, terrain, frame.odometry_row)
         return Estimate(
             stamp_s=frame.stamp_s,

@@ -71,6 +71,9 @@ class Doubt(NamedTuple):
     others: Others
 
 
+Covered = tuple[FloatArray, Doubt | None]  # a covariance (9, 9), and what it hides
+
+
 def left(others: Others, before: Gaussian, after: Gaussian, stamp_s: float) -> Others:
     """Other places when the filter starts anew: those of before, and the one that it left.
 
@@ -149,7 +152,7 @@ def doubted(
     refused: FloatArray | None,
     pose_covariance: FloatArray,
     stamp_s: float,
-) -> tuple[FloatArray, Doubt | None]:
+) -> Covered:
     """The covariance (9, 9) that covers all places, and what it hides; None where there is one.
 
     `refused` is the residual (m,) of the last of poses that were refused and agree.
@@ -168,3 +171,12 @@ def doubted(
         apart[{1: [YAW], 2: [X, Y], 3: [X, Y, YAW]}[len(refused)]] = refused
         covariance[:3, :3] += SHARE * (pose_covariance + np.outer(apart, apart))
     return covariance, Doubt(belief[1], others)
+
+
+def with_lasting_errors(belief: Gaussian, covered: Covered, sigma_m: float) -> Covered:
+    """As of `doubted`, with errors of positions that last: no averaging lessens them."""
+    if not sigma_m:
+        return covered
+    covariance, doubt = covered[0].copy(), covered[1]
+    covariance[[X, Y], [X, Y]] += sigma_m**2
+    return covariance, doubt or Doubt(belief[1], ())

@@ -13,7 +13,7 @@ from odometry.estimation.kept_estimates import EVERY
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.gyroscope_bias import bias_error, bias_events
 from odometry.pipeline import ConstantTerrain, replay
-from tests.odometry.test_pose_delay import run_of, table
+from tests.odometry.preparation.test_pose_delay import run_of, table
 
 
 def kinds(run, **settings):

@@ -14,7 +14,7 @@ import numpy as np
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.geometry.angles import wrap
-from odometry.pose_noise import with_pose_noise
+from odometry.preparation.pose_noise import with_pose_noise
 from odometry.run import Run
 from tests.studies.estimation_noise import RECORDINGS, errors, replayed
 from tests.studies.estimation_recordings import motion

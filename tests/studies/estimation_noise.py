@@ -16,7 +16,7 @@ from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.geometry import se2
 from odometry.pipeline import ConstantTerrain, replay
-from odometry.pose_noise import with_pose_noise
+from odometry.preparation.pose_noise import with_pose_noise
 from odometry.run import Run
 from tests.studies.estimation_recordings import motion
 

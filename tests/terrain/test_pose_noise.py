@@ -8,7 +8,7 @@ import pytest
 
 from odometry.checks.recording import check_recording
 from odometry.estimation.config import IcrEkfConfig
-from odometry.pose_noise import with_pose_noise
+from odometry.preparation.pose_noise import with_pose_noise
 from terrain.cli.compare import compare
 from terrain.cli.identify import identify
 from terrain.main_job import run_odometry
@@ -33,7 +33,7 @@ def test_a_run_takes_the_noise_that_the_recording_shows():
     assert result.config.filter.position_sigma_m == pytest.approx(0.5, rel=0.1)
     (event,) = [event for event in result.replay.events if event.kind == "noisy_positions"]
     assert "in place of 0.05 m" in event.text
-    assert "sigmas of the estimate do not hold them" in event.text
+    assert "the sigmas of x and y hold 0.5 m of them" in event.text
 
 
 @pytest.mark.parametrize(

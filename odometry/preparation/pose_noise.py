@@ -8,6 +8,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.poses.position_noise import position_noise_m
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
+from odometry.preparation.lasting_errors import lasting_sigma_m
 from odometry.run import Run
 from odometry.windows.interpolated import poses_per_measured_one
 
@@ -60,13 +61,16 @@ def _scattered(
     sigma_m = position_noise_m(evidence, stamps_s, positions)
     if sigma_m is None or sigma_m <= config.position_sigma_m:
         return config, ()
+    lasting_m = config.lasting_sigma_m
+    if not lasting_m:
+        lasting_m = lasting_sigma_m(evidence.run, stamps_s, positions, sigma_m)
     event = FilterEvent(
         "noisy_positions",
         float(stamps_s[0]),
         float(stamps_s[-1]),
         f"positions scatter by {sigma_m:.2g} m: that is their noise in the filter, in place of "
-        f"{config.position_sigma_m:g} m. Errors that last for seconds (satellites, reflections) "
-        "come on top, and the sigmas of the estimate do not hold them",
-        (sigma_m,),
+        f"{config.position_sigma_m:g} m. Errors that last (satellites, reflections) may come on "
+        f"top: the sigmas of x and y hold {lasting_m:.2g} m of them",
+        (sigma_m, lasting_m),
     )
-    return replace(config, position_sigma_m=sigma_m), (event,)
+    return replace(config, position_sigma_m=sigma_m, lasting_sigma_m=lasting_m), (event,)

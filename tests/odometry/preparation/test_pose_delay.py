@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import IcrEkfConfig
-from odometry.pose_delay import without_pose_delay
+from odometry.preparation.pose_delay import without_pose_delay
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.checks.drives import driven, starts_and_stops
