@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, evaluate_all, run_fitness
@@ -19,6 +21,7 @@ from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
 from odometry.positions.heading import FoundHeading, headed
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
+from odometry.windows.measured_poses import YAW_FOUND
 from odometry.windows.record import record_of
 
 DEFAULT_MODELS = ("differential_drive", "icr_symmetric", "icr")
@@ -169,6 +172,11 @@ def _horizons_of_positions(
 ) -> tuple[ComparisonConfig, tuple[str, ...]]:
     """Horizons over which positions without yaw show errors, and what a reader should know."""
     notes = [heading.words for heading in found]
+    if found:
+        notes.append(
+            "where such a yaw is off it is so for every window: intervals of differences in "
+            "translation are wider by that"
+        )
     least_m = max((heading.least_horizon_m for heading in found), default=0.0)
     horizons_m = tuple(dict.fromkeys(max(each, least_m) for each in config.horizons_m))
     if horizons_m != config.horizons_m:
@@ -190,8 +198,26 @@ def _differences(
         for horizon_m in config.horizons_m:
             place = Place(robot, terrain, horizon_m)
             here = [evaluation for evaluation in evaluations if place.holds(evaluation)]
-            found += differences(place, here, models, config)
+            found += differences(
+                place, here, models, config, _found_yaw_sigma_rad(split_models, place)
+            )
     return found
+
+
+def _found_yaw_sigma_rad(split_models: Sequence[SplitModels], place: Place) -> float:
+    """Median of the run at a place whose yaw was found worst; 0 where all yaws were measured."""
+    held_out = [
+        part.run.pose
+        for each in split_models
+        if (each.split.robot, each.split.terrain) == (place.robot, place.terrain)
+        for part in each.split.held_out
+    ]
+    sigmas = [
+        float(np.nanmedian(pose[YAW_FOUND]))
+        for pose in held_out
+        if pose is not None and YAW_FOUND in pose
+    ]
+    return max(sigmas, default=0.0)
 
 
 def _not_identified(

@@ -99,6 +99,10 @@ def _best(
         if (difference := between(found, best, model)) is not None
         and difference.interval.holds_zero
     ]
+    if not found:
+        return [
+            f"{best} has the smallest error {where}, {error}, in one window: that shows no order."
+        ]
     if not tied:
         return [f"{best} has the smallest error {where}, {error}; {others} has a larger one."]
     return [

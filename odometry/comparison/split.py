@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.errors import WindowError
+from odometry.identification.shorter_windows import enough_of
 from odometry.identification.stretch_fit import stretches_for
 from odometry.independent_runs import check_no_run_twice
 from odometry.run import Run, robot_labels, run_names
@@ -93,7 +94,7 @@ def windows_of_parts(parts: Sequence[Part], config: WindowConfig) -> Windows:
 
 
 def training_windows(parts: Sequence[Part], config: WindowConfig) -> Windows | Stretches:
-    """`windows_of_parts`, or stretches of positions where yaw was not measured.
+    """`windows_of_parts`, shorter where they are too few; stretches of positions without yaw.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def training_windows(parts: Sequence[Part], config: WindowConfig) -> Windows | S
     """
     cut = [part.cut() for part in parts]
     if not any(map(lacks_yaw, cut)):
-        return windows_of_parts(parts, config)
+        return enough_of(windows_of_parts(parts, config), parts[0].terrain, cut, config)[0]
     stretches = stretches_for(cut, config)
     return stretches.where(stretches.terrain == parts[0].terrain)
 

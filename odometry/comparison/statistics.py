@@ -10,7 +10,9 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation
 from odometry.comparison.summary import QUANTITIES, Place, values_of
+from odometry.identification.fitted import NORMAL, deviations_within
 
+FEW_WINDOWS = 10  # fewer show too little of their own spread: Student's t widens the interval
 LEAST_BLOCKS = 5  # of a run, however long the blocks should be
 COVERED = (2.5, 97.5)  # percentiles of the 95 % interval
 ROUNDING = 1e-12  # a smaller value is one of arithmetic: models that are the same differ by it
@@ -29,6 +31,11 @@ class Interval:
         """Whether the mean cannot be distinguished from zero."""
         return self.low <= 0 <= self.high
 
+    def widened(self, by: float) -> "Interval":
+        """With an independent error of the mean, half of whose 95 % interval is `by`."""
+        below, above = np.hypot(self.mean - self.low, by), np.hypot(self.high - self.mean, by)
+        return Interval(self.mean, float(self.mean - below), float(self.mean + above))
+
 
 def mean_interval(
     values: FloatArray, runs: AnyArray, block: int, draws: int, rng: np.random.Generator
@@ -38,7 +45,9 @@ def mean_interval(
     Each draw takes as many runs as there are, with replacement, and of each of these blocks of
     neighbouring windows, with replacement too (moving blocks around a circle: Politis and Romano
     1992). What differs from run to run widens the interval; for windows that are independent, it
-    is up to sqrt(2) times wider than it need be. With one run, blocks alone are drawn.
+    is up to sqrt(2) times wider than it need be. With one run, blocks alone are drawn. Of fewer
+    than FEW_WINDOWS it is as much wider as Student's t asks for (Hesterberg 2015, expanded
+    percentiles); one value has no interval: it is infinite.
 
     Parameters
     ----------
@@ -62,8 +71,18 @@ def mean_interval(
         means[here] = _block_means(of_run, block, len(here), rng)
     weights = sizes[drawn]
     totals = np.sum(weights * means.reshape(drawn.shape), axis=1) / np.sum(weights, axis=1)
-    low, high = np.percentile(totals, COVERED)
-    return Interval(float(values.mean()), float(low), float(high))
+    if len(values) == 1:
+        return Interval(float(values[0]), -np.inf, np.inf)
+    ends = values.mean() + _widening(len(values)) * (np.percentile(totals, COVERED) - values.mean())
+    low, high = ends.tolist()
+    return Interval(float(values.mean()), low, high)
+
+
+def _widening(count: int) -> float:
+    """How many times an interval of percentiles of so many values is too narrow."""
+    if count >= FEW_WINDOWS:
+        return 1.0
+    return float(deviations_within(np.array(count - 1.0)) / NORMAL * np.sqrt(count / (count - 1)))
 
 
 def _block_means(
@@ -119,8 +138,13 @@ def differences(
     evaluations: Sequence[Evaluation],
     models: Sequence[str],
     config: ComparisonConfig,
+    yaw_sigma_rad: float = 0.0,
 ) -> list[Difference]:
-    """Paired differences of all models at one place, for both quantities."""
+    """Paired differences of all models at one place, for both quantities; none of one window.
+
+    `yaw_sigma_rad` is the standard deviation of yaws that are all off alike, as those found from
+    positions may be: what lies aside of a metre of way is then off by so many metres.
+    """
     block = max(1, round(config.block_m / place.horizon_m))
     found = []
     for first, second in combinations(models, 2):
@@ -128,6 +152,8 @@ def differences(
         if not both:
             continue
         runs = np.repeat(np.arange(len(both)), [len(each.windows) for each in both])
+        if len(runs) < 2:
+            continue
         for quantity in QUANTITIES:
             values = np.concatenate(
                 [
@@ -138,6 +164,8 @@ def differences(
             )
             rng = np.random.default_rng(config.seed)
             interval = mean_interval(values, runs, block, config.draws, rng)
+            if quantity == "translation" and yaw_sigma_rad:
+                interval = interval.widened(NORMAL * yaw_sigma_rad)
             found.append(Difference(place, quantity, first, second, len(values), interval))
     return found
 

@@ -73,7 +73,7 @@ def training_horizon_errors(
     for training_m in tqdm(
         others_m, desc="training horizons", unit="horizon", disable=None if show_progress else True
     ):
-        training = replace(config.training, horizon_m=training_m, horizon_s=0.0)
+        training = replace(config.training, horizon_m=training_m, horizon_s=0.0, fewest_windows=0)
         here = replace(config, training=training)
         models = fit_models(planned, free, here, fitted_to_all=fitted, show_progress=False)
         summaries = _summaries(evaluate_all(models, here), labels, here)

@@ -43,6 +43,8 @@ class Identified:
         Runs that do not fit one model; None where all agree.
     kinds : TwoKinds or None
         Windows that two sets explain far better than one.
+    horizon_m : float or None
+        Wheel travel of a window: less than asked where there were too few of these.
     """
 
     fit: Fit
@@ -53,6 +55,7 @@ class Identified:
     halves: Halves | None = None
     apart: RunsApart | None = None
     kinds: TwoKinds | None = None
+    horizon_m: float | None = None
 
     @property
     def mixed(self) -> str:

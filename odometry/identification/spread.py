@@ -15,14 +15,15 @@ def correlated_groups(
 ) -> IntArray | None:
     """Group (K,) of each window, within which errors may be correlated: runs, else stretches.
 
-    None where there are too few of both to estimate a spread.
+    Stretches are shorter where there would be too few of them. None where there are too few
+    windows to estimate a spread.
 
     Parameters
     ----------
     run : (K,) of str
         Of each window, in the order of time.
     stretch : int
-        Windows of a stretch of a run.
+        Most windows of a stretch of a run.
     fewest : int
         Stretches whose spread is taken.
     """
@@ -30,6 +31,7 @@ def correlated_groups(
     if len(names) >= FEWEST_RUNS:
         return np.array([names.index(name) for name in run], dtype=np.int64)
     groups, count = np.zeros(len(run), dtype=np.int64), 0
+    stretch = max(1, min(stretch, len(run) // fewest))
     for name in names:
         here = np.flatnonzero(run == name)
         stretches = max(1, len(here) // stretch)

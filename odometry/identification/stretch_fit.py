@@ -19,6 +19,7 @@ from odometry.models.catalogue import MODELS
 from odometry.run import Robot, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.measured_poses import lacks_yaw
+from odometry.windows.stretch_motion import change_by_late_turns
 from odometry.windows.stretch_noise import (
     UNKNOWN_NOISE,
     StretchNoise,
@@ -50,8 +51,8 @@ def stretch_uncertainty(
     That of generalised least squares under the noise that was found; the degrees of freedom are
     those of Fai and Cornelius 1996: how well the three variances are known by which each
     parameter's own is made. Where the spread between runs, or between stretches, shows larger
-    variances, these are taken. A gyroscope's scale is off by the same in all of them, which no
-    spread shows: it is added with SCALE.
+    variances, these are taken. A gyroscope's scale and its delay are off by the same in all of
+    them, which no spread shows: they are added with SCALE and half of its period.
 
     Parameters
     ----------
@@ -76,7 +77,8 @@ def stretch_uncertainty(
         found = np.einsum("kij,kj->ki", root, residuals)
         covariance, freedom = grown(covariance, freedom, *spread_between(groups, whitened, found))
     by_scale = _by_scale(problem, root, whitened @ inverse)
-    total = covariance + by_scale[:, None] * by_scale
+    by_delay = _by_delay(problem, solution, root, whitened @ inverse)
+    total = covariance + by_scale[:, None] * by_scale + by_delay[:, None] * by_delay
     freedom = freedom * np.square(np.diag(total) / np.maximum(np.diag(covariance), TINY))
     covariance = sizes[:, None] * total * sizes
     return Uncertainty(np.asarray((covariance + covariance.T) / 2), freedom)
@@ -88,6 +90,18 @@ def _by_scale(problem: StretchProblem, root: FloatArray, influence: FloatArray) 
     if turns is None:
         return np.zeros(influence.shape[-1])
     off = np.einsum("kij,kj->ki", root[:, :, -turns.shape[1] :], SCALE * turns)
+    return np.asarray(np.einsum("kif,ki->f", influence, off))
+
+
+def _by_delay(
+    problem: StretchProblem, solution: Solution, root: FloatArray, influence: FloatArray
+) -> FloatArray:
+    """What half of a gyroscope's period moves the parameters (F,) by: x_icr, of a robot ahead."""
+    if problem.windows.turns_rad is None:
+        return np.zeros(influence.shape[-1])
+    values = problem.complete(solution.chosen)
+    ways = change_by_late_turns(problem.model, values, problem.windows)
+    off = np.einsum("kij,kj->ki", root[:, :, : ways.shape[1]], ways)
     return np.asarray(np.einsum("kif,ki->f", influence, off))
 
 

@@ -8,7 +8,12 @@ from scipy.sparse import csr_array
 from odometry.arrays import FloatArray
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
-from odometry.identification.spread import correlated_groups, spread_between
+from odometry.identification.spread import (
+    FEWEST_STRETCHES,
+    STRETCH,
+    correlated_groups,
+    spread_between,
+)
 from odometry.windows.noise import by_pose_noise, score_covariance, window_covariances
 from odometry.windows.windows import Windows
 
@@ -121,7 +126,18 @@ def _parts_and_freedoms(
         for causes in ((variances, none), *((none, axis * motion) for axis in np.eye(3)))
     ]
     parts = near.inverse @ np.array(scores) @ near.inverse
-    return parts, freedom * np.append(1.0, left / left.sum())
+    freedoms = freedom * np.append(1.0, left / left.sum())
+    return parts, np.minimum(freedoms, _most_freedom(windows, weights, left))
+
+
+def _most_freedom(windows: Windows, weights: FloatArray, left: FloatArray) -> float:
+    """What few windows leave of one axis, which some parameters depend on alone.
+
+    The noise of many shows in all axes; so do their errors of motion, and the spread.
+    """
+    if len(windows) >= FEWEST_STRETCHES * STRETCH:
+        return np.inf
+    return float(weights.sum() * left.min())
 
 
 def _unexplained_per_m(

@@ -18,6 +18,9 @@ class WindowConfig:
     stride : float
         From the start of one window to the start of the next, in horizons; 1 makes distinct
         segments, as Baril 2020 has them.
+    fewest_windows : int
+        Where a terrain has fewer windows, `identify` and `compare` shorten `horizon_m` to have
+        more: fewer show no spread of the parameters (six groups of five do). 0 keeps the horizon.
     shortest : float
         A stretch shorter than a horizon still makes a window if it has this share of it.
     pose_gap_s : float
@@ -35,6 +38,7 @@ class WindowConfig:
     horizon_m: float = 2.0
     horizon_s: float = 0.0
     stride: float = 1.0
+    fewest_windows: int = 30
     shortest: float = 0.1
     pose_gap_s: float = 0.5
     position_sigma_m: float = 0.02
@@ -46,4 +50,5 @@ class WindowConfig:
         )
         if self.horizon_s != 0:
             require_positive(self, "horizon_s")
+        require(self.fewest_windows >= 0, f"fewest_windows = {self.fewest_windows}, expected >= 0")
         require(0 < self.shortest <= 1, f"shortest = {self.shortest}, expected 0 to 1")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.geometry import se2
 from odometry.geometry.angles import wrap
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.inputs import Inputs
@@ -30,6 +31,19 @@ def shape_residuals(model: KinematicModel, values: FloatArray, of: Stretches) ->
         return rows
     turned = _between(model.twist(values, of.ends.inputs)[:, 2], of)
     return np.concatenate([rows, turned - of.turns_rad], axis=1)
+
+
+def change_by_late_turns(model: KinematicModel, values: FloatArray, of: Stretches) -> FloatArray:
+    """Change (K, 2n) of the ways of `shape_residuals` by a gyroscope `turns_late_s` late.
+
+    A yaw that lags moves a body that drives ahead aside, as another x_icr does.
+    """
+    off = []
+    for late_s in (0.0, of.turns_late_s):
+        motion = window_motion(_Carried(model, late_s), values, of.ends)
+        ways, _ = antenna_ways(motion.reshape(len(of), of.steps, 3), of.arm_m)
+        off.append(_turned(ways, rotations(ways, of.measured)))
+    return np.asarray((off[1] - off[0]).reshape(len(of), -1))
 
 
 def linearised_shape_residuals(
@@ -83,13 +97,17 @@ def shape_errors(
 
 @dataclass(frozen=True)
 class _Carried:
-    """A model whose yaw follows the gyroscope of the inputs."""
+    """A model whose yaw follows the gyroscope of the inputs, late by some time."""
 
     model: KinematicModel
+    late_s: float = 0.0
 
     def twist(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         twists = self.model.twist(values, inputs).copy()
         twists[:, 2] = inputs.yaw_rate_rad_s
+        if self.late_s:
+            lags = np.outer(self.late_s * twists[:, 2], (0.0, 0.0, 1.0))
+            twists[:, :2] = se2.transform(lags, twists[:, :2])
         return np.asarray(twists)
 
     def linearised(self, values: FloatArray, inputs: Inputs) -> Linearised:

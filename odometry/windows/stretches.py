@@ -44,12 +44,16 @@ class Stretches:
     arm_m : (2,)
         Place of the antenna in the robot frame; its origin where `[sensors]` does not state it.
     arm_stated : bool
+    turns_late_s : float
+        Half of the gyroscope's period: whether a rate is the mean before its stamp, after it or of
+        that moment is not recorded. 0 without one.
     """
 
     ends: Windows
     steps: int
     arm_m: FloatArray
     arm_stated: bool
+    turns_late_s: float = 0.0
 
     def __len__(self) -> int:
         return len(self.ends) // self.steps
@@ -144,7 +148,15 @@ def stretches_of(runs: Sequence[Run], length_m: float, config: WindowConfig) -> 
         _ends(record, name, steps, of)
         for record, name, of in zip(records, run_names(runs), found, strict=True)
     ]
-    return Stretches(laid_together(parts), steps, *_shared_arm(runs))
+    late_s = max(_half_period_s(run) for run in runs)
+    return Stretches(laid_together(parts), steps, *_shared_arm(runs), late_s)
+
+
+def _half_period_s(run: Run) -> float:
+    rates = run.yaw_rate
+    if rates is None or len(rates.stamps_s) < 2:
+        return 0.0
+    return float(np.median(np.diff(rates.stamps_s)) / 2)
 
 
 def _shared_arm(runs: Sequence[Run]) -> tuple[FloatArray, bool]:

@@ -80,6 +80,7 @@ def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
     from odometry.identification.plausibility import notes, short_windows, turns_outside
     from odometry.identification.report import report
+    from odometry.identification.shorter_windows import shortened
     from odometry.identification.stretch_fit import position_notes
     from odometry.windows.record import words
 
@@ -88,14 +89,16 @@ def print_identification(found: "Identification") -> None:
             click.echo(f"Warning: [{name}] {of_terrain.mixed}", err=True)
     for name, of_terrain in found.terrains.items():
         click.echo("\n".join(report(name, of_terrain)))
-        short = short_windows(of_terrain.fit.windows, found.window_config)
+        windows, config = of_terrain.fit.windows, found.window_config
+        taken_m = of_terrain.horizon_m or config.horizon_m
         doubts = (
+            shortened(windows, config.horizon_m, taken_m),
             *notes(of_terrain.fit),
             turns_outside(of_terrain.fit, found.robot),
             *_assumed(of_terrain),
             *_no_gain(of_terrain),
             of_terrain.halves and of_terrain.halves.note(),
-            short,
+            short_windows(windows, replace(config, horizon_m=taken_m)),
         )
         for doubt in filter(None, (*position_notes(of_terrain.fit), *doubts)):
             click.echo(f"Note: {doubt}", err=True)

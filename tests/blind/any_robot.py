@@ -56,10 +56,15 @@ def draw(rng):
     )
 
 
-def write_clean_run(folder, seed):
-    """Write a run folder with the truth beside it; returns the robot. A seed gives its bytes."""
+def write_clean_run(folder, seed, drive=0):
+    """Write a run folder with the truth beside it; returns the robot. A seed gives its bytes.
+
+    Further drives are of the same robot, with commands, rates and noise of their own.
+    """
     rng = np.random.default_rng([seed, 20261128])
     robot = draw(rng)
+    if drive:
+        rng = np.random.default_rng([seed, 20261128, drive])
     truth = robot.truth
     speed, turn = _asked(robot, rng)
     treads = np.stack([speed - turn * truth["y_left"], speed - turn * truth["y_right"]])
@@ -70,7 +75,8 @@ def write_clean_run(folder, seed):
         truth["y_left"] - truth["y_right"]
     )
     yaw = np.cumsum(turn) * STEP_S + rng.uniform(-3, 3)
-    velocity = (ahead - 1j * truth["x_icr"] * turn) * np.exp(1j * yaw)
+    midway = yaw - turn * STEP_S / 2
+    velocity = (ahead - 1j * truth["x_icr"] * turn) * np.exp(1j * midway)
     place = np.cumsum(velocity) * STEP_S
     folder.mkdir(parents=True)
     (folder / "run.toml").write_text(f"[robot]\ntrack_width = {robot.track_m:.4f}\n", "utf-8")

@@ -75,10 +75,29 @@ def test_a_short_run_still_has_five_blocks():
     assert width(interval(values, np.zeros(10), 100)) > 0.5
 
 
-@pytest.mark.parametrize("count", [1, 2, 4])
+@pytest.mark.parametrize("count", [2, 4])
 def test_few_windows_are_no_error(count):
     found = interval(np.full(count, 0.2), np.zeros(count), 5)
     assert (found.mean, found.low, found.high) == pytest.approx((0.2, 0.2, 0.2))
+
+
+def test_one_window_has_no_interval():
+    assert interval(np.array([0.2]), np.zeros(1), 5) == Interval(0.2, -np.inf, np.inf)
+
+
+@pytest.mark.parametrize("count", [2, 3, 6, 9])
+def test_few_windows_have_the_interval_of_student(count):
+    """Percentiles alone hold the truth in 50, 70, 86 and 90 %."""
+    held = 0
+    for seed in range(400):
+        values = np.random.default_rng(seed).normal(0, 1, count)
+        held += interval(values, np.zeros(count), 5, draws=400, seed=seed).holds_zero
+    assert 0.92 <= held / 400 <= 0.99
+
+
+def test_another_error_widens_both_sides():
+    wide = Interval(1.0, 0.4, 1.3).widened(0.8)
+    assert (wide.low, wide.high) == pytest.approx((0.0, 1 + np.hypot(0.3, 0.8)))
 
 
 def test_differences_of_arithmetic_alone_are_none():

@@ -92,6 +92,19 @@ def test_a_scale_of_the_gyroscope_that_is_off_stays_within_the_intervals():
     assert interval.low < exact.values["b_hat"] < interval.high
 
 
+def test_what_a_rate_is_the_mean_of_is_within_the_interval_of_x_icr():
+    """Rates of 5 Hz, each the mean until the next: the way of 0.1 s, as another x_icr."""
+    run = emptied(drive(6, gyroscope=True, noise_m=0.01))
+    rates = run.imu["gyro_z"].reshape(-1, 4).mean(axis=1)
+    columns = {"t": run.imu.stamps_s[::4], "gyro_z": rates}
+    found = fit_of(replace(run, imu=replace(run.imu.rows(slice(None, None, 4)), columns=columns)))
+    interval = found.intervals["x_icr"]
+    assert abs(found.values["x_icr"] - ICR["x_icr"]) > 0.03
+    assert interval.low < ICR["x_icr"] < interval.high
+    quick = fit_of(run).intervals["x_icr"]
+    assert quick.high - quick.low < 0.5 * (interval.high - interval.low)
+
+
 @pytest.mark.parametrize("noise_m", [0.02, 0.3, 1.0])
 def test_the_noise_is_found_and_more_of_it_needs_longer_stretches(noise_m):
     found = fit_of(emptied(drive(7, noise_m=noise_m, duration_s=300.0)), model="icr_symmetric")

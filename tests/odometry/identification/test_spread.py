@@ -7,7 +7,7 @@ from scipy.linalg import sqrtm
 from odometry.identification.spread import correlated_groups, spread_between
 
 
-def test_groups_are_runs_else_stretches_of_five_windows_or_more():
+def test_groups_are_runs_else_stretches_of_five_windows_or_six_shorter_ones():
     runs = np.repeat(np.array(["a", "b", "c"], dtype=object), [4, 9, 30])
     assert correlated_groups(runs).tolist() == [0] * 4 + [1] * 9 + [2] * 30
     two = correlated_groups(runs[runs != "a"])
@@ -15,7 +15,10 @@ def test_groups_are_runs_else_stretches_of_five_windows_or_more():
     assert np.unique(two, return_counts=True)[1].min() >= 5 - 1
     assert not set(two[:9]) & set(two[9:])
     assert len(set(two)) == 1 + 6
-    assert correlated_groups(runs[runs == "b"]) is None
+    few = runs[runs == "c"]
+    assert np.bincount(correlated_groups(few[:29])).tolist() == [5, 4, 4, 4, 4, 4, 4]
+    assert correlated_groups(few[:6]).tolist() == [0, 1, 2, 3, 4, 5]
+    assert correlated_groups(few[:5]) is None
 
 
 def printed(groups, design, residuals):
