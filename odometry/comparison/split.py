@@ -103,7 +103,7 @@ def training_windows(parts: Sequence[Part], config: WindowConfig) -> Windows | S
     """
     cut = [part.cut() for part in parts]
     if not any(map(lacks_yaw, cut)):
-        return enough_of(windows_of_parts(parts, config), parts[0].terrain, cut, config)[0]
+        return enough_of(windows_of_parts(parts, config), cut, config)[0]
     stretches = stretches_for(cut, config)
     return stretches.where(stretches.terrain == parts[0].terrain)
 

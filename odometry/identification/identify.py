@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
+from odometry.effects.corrected import Added
+from odometry.effects.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
 from odometry.errors import IdentificationError, OdometryError, ParameterError
 from odometry.identification.fit import Fit
@@ -20,8 +22,9 @@ from odometry.identification.halves import (
 )
 from odometry.identification.identification import Identification, Identified
 from odometry.identification.runs_apart import runs_apart
-from odometry.identification.shorter_windows import windows_of_any, windows_on
+from odometry.identification.shorter_windows import enough_of
 from odometry.identification.start import SolverConfig
+from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.identification.two_kinds import two_kinds
 from odometry.independent_runs import check_no_run_twice
 from odometry.models.catalogue import MODELS
@@ -30,7 +33,7 @@ from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches
 from odometry.windows.window_errors import WindowErrors, errors_over
-from odometry.windows.windows import Windows
+from odometry.windows.windows import Windows, windows_of
 
 SIMPLE = "icr_symmetric"  # two factors: a scale and an effective width
 
@@ -92,22 +95,21 @@ def identify(
     check_no_run_twice(runs)
     robot = robot_of(runs)
     named = [with_named_terrain(run, terrain) for run in runs]
-    windows = windows_of_any(named, window_config)
+    windows = windows_or_stretches(named, window_config)
     models = {
         str(name): model_on_terrain(str(name), model, robot)
         for name in dict.fromkeys(windows.terrain)
     }
     by_terrain = {
-        name: windows_on(name, effects_of(of.model), named, windows, window_config)
+        name: _windows_on(name, effects_of(of.model), named, windows, window_config)
         for name, of in models.items()
     }
     runs_by_terrain = (len(set(here.run)) for here, _ in by_terrain.values())
     fits = sum(
         3 + (min(count, MOST_FOLDS) + count if count > 1 else 0) for count in runs_by_terrain
     )
-    off = None if show_progress else True
     terrains = {}
-    with tqdm(total=fits, unit="fit", disable=off) as bar:
+    with tqdm(total=fits, unit="fit", disable=None if show_progress else True) as bar:
         for name, (here, cut) in by_terrain.items():
             bar.set_description(models[name].model.name)
             given = _given(models[name], fixed or {}, released)
@@ -131,6 +133,27 @@ def _given(
     """Parameters that are held: those of `fixed`, then what a set knows of the robot."""
     known = {name: value for name, value in model.known.items() if name not in released}
     return {**known, **fixed}
+
+
+def _windows_on(
+    terrain: str,
+    effects: Sequence[Added],
+    runs: Sequence[Run],
+    as_measured: Windows | Stretches,
+    config: WindowConfig,
+) -> tuple[Windows | Stretches, WindowConfig]:
+    """Windows on one terrain, of the robot's poses, and the settings by which they were cut."""
+    windows = as_measured
+    if on_measurement(effects):
+        if isinstance(windows, Stretches):
+            raise IdentificationError(
+                f"[{terrain}] the set has effects on the measured pose, which are undone where yaw "
+                "was measured; pose.csv has positions alone: state [sensors] pose instead"
+            )
+        runs = [robot_run(run, effects) for run in runs]
+        windows = windows_of(runs, config)
+    here = windows.where(windows.terrain == terrain)
+    return (here, config) if isinstance(here, Stretches) else enough_of(here, runs, config)
 
 
 def _counted(fit_to: FitTo, bar: tqdm) -> FitTo:

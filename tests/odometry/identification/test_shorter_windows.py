@@ -5,12 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.errors import WindowError
 from odometry.identification.identify import identify
 from odometry.identification.shorter_windows import LEAST_S, shortened
-from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from tests.blind.any_robot import write_clean_run
 from tests.odometry.positions_drives import drive
 
 
@@ -65,13 +62,6 @@ def test_long_runs_keep_the_horizon():
     assert found.horizon_m == 2.0
 
 
-def test_a_run_shorter_than_every_window_has_windows(slow):
-    found = identified(slow, horizon_m=100.0)
-    assert len(found.fit.windows) > 12
-    with pytest.raises(WindowError, match="no window of 100 m"):
-        identified(slow, horizon_m=100.0, fewest_windows=0)
-
-
 def test_that_they_are_shorter_is_said(slow):
     found = identified(slow)
     said = shortened(found.fit.windows, 2.0, found.horizon_m)
@@ -86,17 +76,3 @@ def test_few_windows_have_the_freedom_of_one_axis():
     found = identified(run, fewest_windows=0)
     assert len(found.fit.windows) == 3
     assert found.fit.freedom.max() < 2.0
-
-
-@pytest.mark.parametrize("seed", [17, 92])
-def test_few_windows_of_small_robots_are_not_surer_than_right(tmp_path, seed):
-    """Turns by the treads were 5 and 17 deviations off on half of these drives."""
-    robot = write_clean_run(tmp_path / "run", seed)
-    run = Run.read(tmp_path / "run")
-    half = replace(run, odometry=run.odometry.rows(slice(0, len(run.odometry) // 2)))
-    found = identified(half)
-    gain = found.fit.values["alpha_left"] / (
-        found.fit.values["y_left"] - found.fit.values["y_right"]
-    )
-    true = robot.truth["alpha_left"] / (robot.truth["y_left"] - robot.truth["y_right"])
-    assert gain == pytest.approx(true, rel=0.1)
