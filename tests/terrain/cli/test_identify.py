@@ -3,11 +3,13 @@
 import re
 import shutil
 
+import click
 import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.parameters import read_parameters
+from terrain.cli.options import window_options
 from tests.terrain.cli.identify_calls import SHORT
 from tests.terrain.written_runs import drive_curves
 
@@ -112,6 +114,15 @@ def test_the_windows_are_those_that_were_requested(command, curvy_run):
     assert numbers[0] in (5, 6)
     assert numbers[1] in (10, 11, 12)
     assert 2 * numbers[0] - 2 <= numbers[2] <= 2 * numbers[0] + 1
+
+
+@pytest.mark.parametrize(("options", "fewest"), [([], 30), (["--horizon", "2"], 0)])
+def test_a_stated_horizon_is_kept_where_windows_are_few(options, fewest):
+    seen = []
+    click.command()(window_options(lambda **given: seen.append(given["windows"]))).main(
+        options, standalone_mode=False
+    )
+    assert seen[0].fewest_windows == fewest
 
 
 def test_the_same_call_writes_the_same_bytes(command, curvy_run):
