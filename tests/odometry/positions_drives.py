@@ -91,3 +91,15 @@ def emptied(run, *, turned_rad=0.0, moved_m=(0.0, 0.0)):
 
 def table(columns):
     return Table(Path("table.csv"), columns, np.arange(len(columns["t"])) + 2)
+
+
+def slower(run, factor):
+    """The same way in a longer time."""
+    parts = {}
+    for name in ("odometry", "pose"):
+        columns = dict(getattr(run, name).columns)
+        columns["t"] = columns["t"] * factor
+        for speed in {"v_left", "v_right"} & set(columns):
+            columns[speed] = columns[speed] / factor
+        parts[name] = replace(getattr(run, name), columns=columns)
+    return replace(run, **parts)

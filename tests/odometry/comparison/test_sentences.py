@@ -52,14 +52,6 @@ def test_a_model_that_beats_all_others():
     assert not any("effective width" in line for line in lines)
 
 
-def test_one_window_shows_no_order():
-    lines = said({"icr_symmetric": 0.03, "icr": 0.02}, {})
-    assert lines[0] == (
-        "icr has the smallest error over 2 m on grass in translation, 0.0200 m per m, in one "
-        "window: that shows no order."
-    )
-
-
 def test_a_model_that_was_not_evaluated_everywhere_is_not_ranked():
     evaluations = [
         evaluation("a", icr=[0.1], width=[0.2], part=[0.0]),

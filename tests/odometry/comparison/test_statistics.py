@@ -95,11 +95,6 @@ def test_few_windows_have_the_interval_of_student(count):
     assert 0.92 <= held / 400 <= 0.99
 
 
-def test_another_error_widens_both_sides():
-    wide = Interval(1.0, 0.4, 1.3).widened(0.8)
-    assert (wide.low, wide.high) == pytest.approx((0.0, 1 + np.hypot(0.3, 0.8)))
-
-
 def test_differences_of_arithmetic_alone_are_none():
     """Two forms of one model differ in the last digit, and may do so always the same way."""
     found = interval(np.full(40, 3e-16), np.repeat([0, 1], 20), 3)

@@ -1,26 +1,12 @@
 """Windows of robots that travel little: shorter ones, and what few of them leave open."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from odometry.identification.identify import identify
 from odometry.identification.shorter_windows import LEAST_S, shortened
 from odometry.windows.config import WindowConfig
-from tests.odometry.positions_drives import drive
-
-
-def slower(run, factor):
-    """The same way in a longer time."""
-    parts = {}
-    for name in ("odometry", "pose"):
-        columns = dict(getattr(run, name).columns)
-        columns["t"] = columns["t"] * factor
-        for speed in {"v_left", "v_right"} & set(columns):
-            columns[speed] = columns[speed] / factor
-        parts[name] = replace(getattr(run, name), columns=columns)
-    return replace(run, **parts)
+from tests.odometry.positions_drives import drive, slower
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +34,9 @@ def test_a_slow_robot_has_more_and_shorter_windows(slow):
     assert more.horizon_m < 0.5
     assert few.horizon_m == 2.0
     assert more.fit.sigmas["y_left"] < few.fit.sigmas["y_left"]
+    said = shortened(more.fit.windows, 2.0, more.horizon_m)
+    assert said.startswith(f"windows are {more.horizon_m:.2g} m long, not 2 m")
+    assert shortened(few.fit.windows, 2.0, 2.0) == ""
 
 
 def test_they_are_as_long_as_slip_wanders(slow):
@@ -60,14 +49,6 @@ def test_long_runs_keep_the_horizon():
     found = identified(drive(4, duration_s=120.0, noise_m=0.01))
     assert len(found.fit.windows) >= 30
     assert found.horizon_m == 2.0
-
-
-def test_that_they_are_shorter_is_said(slow):
-    found = identified(slow)
-    said = shortened(found.fit.windows, 2.0, found.horizon_m)
-    assert said.startswith(f"windows are {found.horizon_m:.2g} m long, not 2 m")
-    assert f"there are {len(found.fit.windows)} now" in said
-    assert shortened(found.fit.windows, 2.0, 2.0) == ""
 
 
 def test_few_windows_have_the_freedom_of_one_axis():
