@@ -24,10 +24,20 @@ class BySide(CommandEffect):
     """
 
     looks_like = "turns to one side that were not commanded, where this tread has its fault"
-    of_both: CommandEffect
+    _of: type[CommandEffect]
+
+    def __init__(self, of_both: CommandEffect | None = None) -> None:
+        self.of_both = of_both or self._of()
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """As the effect of both is."""
+        offered = cls._of.offered(recorded)
+        return tuple(cls(one) for one in offered if isinstance(one, CommandEffect))
 
     def __init_subclass__(cls, of: type[CommandEffect]) -> None:
         super().__init_subclass__()
+        cls._of = of
         cls.name, cls.in_words, cls.remedy = of.name, of.in_words, of.remedy
         cls.equation, cls.source = f"{of.equation}, of each tread", of.source
         cls.needs, cls.alike = of.needs, of.alike
@@ -91,21 +101,18 @@ class LagBySide(BySide, of=ActuatorLag):
     """A first-order lag of each tread's own."""
 
     form = "first_order_by_side"
-    of_both = ActuatorLag()
 
 
 class DelayBySide(BySide, of=CommandDelay):
     """A dead time of each tread's own."""
 
     form = "by_side"
-    of_both = CommandDelay()
 
 
 class DeadbandBySide(BySide, of=Deadband):
     """A deadband of each tread's own."""
 
     form = "deadband_by_side"
-    of_both = Deadband()
 
 
 class SaturationBySide(BySide, of=Saturation):
@@ -113,20 +120,11 @@ class SaturationBySide(BySide, of=Saturation):
 
     form = "saturation_by_side"
 
-    def __init__(self, fastest_m_s: float = 20.0) -> None:
-        self.of_both = Saturation(fastest_m_s)
-
-    @classmethod
-    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """Below the fastest speed recorded."""
-        return (cls(recorded.fastest_m_s),)
-
 
 class RateBySide(BySide, of=RateLimit):
     """A highest change of speed of each tread's own; one that is not reached is none."""
 
     form = "rate_by_side"
-    of_both = RateLimit()
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -8,11 +8,12 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.effects.base import CommandEffect, Effect, EffectParameter
 from odometry.effects.base_model import Base
 from odometry.effects.held_commands import held_spans
-from odometry.effects.recorded import Recorded
+from odometry.effects.recorded import Recorded, crawling
 from odometry.effects.remembered import Remembered
 from odometry.models.inputs import Inputs
 
 EDGE_M_S = 0.005  # over which a command begins to act: samples there have a derivative
+EDGE = 0.1  # share of the least speed that acts, where that is less
 BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
 HIGHEST_LEAST_M_S = 1.0
@@ -27,7 +28,25 @@ class DriveLimit(CommandEffect):
     remedy = "record measured wheel speeds, or keep the limit in the model"
 
 
-class Deadband(DriveLimit):
+class ScaledLimit(DriveLimit):
+    """A limit that is searched at speeds of the robot.
+
+    Parameters
+    ----------
+    crawls : float
+        See `crawling`: of slow robots starts and steps of the search are as much smaller.
+    """
+
+    def __init__(self, crawls: float = 1.0) -> None:
+        self.crawls = crawls
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """At the speeds that were recorded."""
+        return (cls(crawling(recorded.fastest_m_s)),)
+
+
+class Deadband(ScaledLimit):
     """Commands below a speed move nothing; others act in full."""
 
     form = "deadband"
@@ -38,27 +57,29 @@ class Deadband(DriveLimit):
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
+        start, scale = self.crawls * 0.05, self.crawls * 0.005
         return (
-            EffectParameter("least", "m/s", 0.0, HIGHEST_LEAST_M_S, 0.05, 0.005, in_steps=True),
+            EffectParameter("least", "m/s", 0.0, HIGHEST_LEAST_M_S, start, scale, in_steps=True),
         )
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`: near enough to each other for a cost that has steps."""
-        return np.array(STARTS_M_S)[:, None]
+        return self.crawls * np.array(STARTS_M_S)[:, None]
 
     def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `Effect.resolution`: up to the nearest commands below and above."""
         off = np.append(np.abs(inputs.tread_speeds_m_s).ravel(), 0.0) - values[0]
         below, above = -off[off <= 0], off[off > 0]
         farthest = max(below.min(), above.min(initial=HIGHEST_LEAST_M_S - values[0]))
-        return np.array([max(farthest, BLURRED_M_S)])
+        return np.array([max(farthest, self.crawls * BLURRED_M_S)])
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`."""
         speeds = inputs.tread_speeds_m_s
         if values[0] <= 0:
             return speeds
-        acts = np.clip((np.abs(speeds) - values[0]) / EDGE_M_S + 0.5, 0.0, 1.0)
+        edge_m_s = min(EDGE_M_S, EDGE * values[0])
+        acts = np.clip((np.abs(speeds) - values[0]) / edge_m_s + 0.5, 0.0, 1.0)
         return np.asarray(acts * speeds)
 
 
@@ -88,7 +109,8 @@ class Saturation(DriveLimit):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         most = self.fastest_m_s
-        return (EffectParameter("fastest", "m/s", 0.0, most, 0.9 * most, 0.01, most),)
+        scale = crawling(most) * 0.01
+        return (EffectParameter("fastest", "m/s", 0.0, most, 0.9 * most, scale, most),)
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`."""
@@ -99,7 +121,7 @@ class Saturation(DriveLimit):
         return np.clip(inputs.tread_speeds_m_s, -values[0], values[0])
 
 
-class RateLimit(DriveLimit):
+class RateLimit(ScaledLimit):
     """Treads speed up and slow down no faster than their drives can."""
 
     form = "rate"
@@ -108,17 +130,19 @@ class RateLimit(DriveLimit):
     looks_like = "errors after large changes of speed, few after small ones"
     needs = "tread speeds that change in steps, and a measured pose"
 
-    def __init__(self) -> None:
+    def __init__(self, crawls: float = 1.0) -> None:
+        super().__init__(crawls)
         self._limits = Remembered()
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
-        return (EffectParameter("most", "m/s^2", 0.05, HARDEST_M_S2, 1.0, 0.05, None),)
+        least = self.crawls * 0.05
+        return (EffectParameter("most", "m/s^2", least, HARDEST_M_S2, self.crawls, least, None),)
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`."""
-        return np.array([[0.3], [0.8], [2.0]])
+        return self.crawls * np.array([[0.3], [0.8], [2.0]])
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`; the mean over each sample, exact for held commands."""

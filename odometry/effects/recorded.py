@@ -10,6 +10,8 @@ from odometry.effects.base_model import Base
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN
 
+CRAWLING_M_S = 0.25  # fastest speed down to which searches of speeds are as for fast robots
+
 
 @dataclass(frozen=True)
 class Recorded:
@@ -65,6 +67,11 @@ class Recorded:
     def _lateral_m_s2(self, inputs: Inputs) -> float:
         twist = self.base.model.twist(self.base.values, inputs)
         return float(np.percentile(np.abs(twist[:, 0] * twist[:, 2]), 95))
+
+
+def crawling(fastest_m_s: float) -> float:
+    """Share of CRAWLING_M_S that a fastest speed is, 1 at most."""
+    return min(1.0, fastest_m_s / CRAWLING_M_S)
 
 
 def labels_of(inputs: Inputs) -> set[str]:

@@ -27,7 +27,13 @@ class TreadSlip(CommandEffect):
 
 
 class SlipBySpeed(TreadSlip):
-    """A share of the speed is lost that grows with the speed."""
+    """A share of the speed is lost that grows with the speed.
+
+    Parameters
+    ----------
+    fastest_m_s : float
+        At which all of the speed may be lost.
+    """
 
     form = "by_speed"
     in_words = "slip that grows with the speed of a tread"
@@ -35,10 +41,19 @@ class SlipBySpeed(TreadSlip):
     looks_like = "fast stretches that come out short"
     needs = "stretches at different speeds"
 
+    def __init__(self, fastest_m_s: float = 1.0) -> None:
+        self.fastest_m_s = fastest_m_s
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Of slow robots at the fastest speed recorded."""
+        return (cls(min(recorded.fastest_m_s, 1.0)),)
+
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
-        return (EffectParameter("growth", "s/m", -1.0, 1.0, 0.0, 0.01),)
+        most = 1 / self.fastest_m_s
+        return (EffectParameter("growth", "s/m", -most, most, 0.0, 0.01),)
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`."""

@@ -66,7 +66,7 @@ def write_clean_run(folder, seed, drive=0):
     if drive:
         rng = np.random.default_rng([seed, 20261128, drive])
     truth = robot.truth
-    speed, turn = _asked(robot, rng)
+    speed, turn = asked_motion(robot, rng)
     treads = np.stack([speed - turn * truth["y_left"], speed - turn * truth["y_right"]])
     treads /= np.array([[truth["alpha_left"]], [truth["alpha_right"]]])
     moved = _slipping(treads, truth, rng)
@@ -85,7 +85,7 @@ def write_clean_run(folder, seed, drive=0):
     return robot
 
 
-def _asked(robot, rng):
+def asked_motion(robot, rng):
     """Forward speed and turn rate (N,) that a driver asks for, through a lag of the drives."""
     count = int(robot.lasts_s / STEP_S)
     asked, begin = np.zeros((2, count)), 0

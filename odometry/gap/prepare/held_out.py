@@ -12,6 +12,7 @@ from odometry.windows.dense import DenseWindows, thinned
 
 Apart = tuple[list[DenseWindows], list[DenseWindows]]  # to fit to, and to evaluate on
 STANDING_M_S = 0.05  # mean tread speed of a piece below which it shows no effect
+STANDING = 0.25  # the same as a share of that of the run, of slow robots
 
 
 def held_out_pieces(scenes: Sequence[DenseWindows], config: GapConfig) -> list[IntArray]:
@@ -57,10 +58,12 @@ def apart(
 
 
 def moving_pieces(scene: DenseWindows, part_s: float) -> IntArray:
-    """Numbers of the pieces of a run in which its treads move."""
+    """Numbers of the pieces of a run in which its treads move, as fast as this robot does."""
     number = pieces(scene, part_s)
     ends_s = scene.pose_s[scene.windows[:, [0, -1]]]
     travel_m = np.diff(np.interp(ends_s, scene.time_s, scene.travel_m), axis=1)[:, 0]
-    moving_m = STANDING_M_S * (ends_s[:, 1] - ends_s[:, 0])
+    lasting_s = ends_s[:, 1] - ends_s[:, 0]
+    mean_m_s = float(travel_m.sum() / lasting_s.sum())
+    moving_m = min(STANDING_M_S, STANDING * mean_m_s) * lasting_s
     surplus_m = np.bincount(number, weights=travel_m - moving_m)
     return np.flatnonzero(surplus_m > 0)

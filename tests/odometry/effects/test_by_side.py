@@ -20,7 +20,7 @@ VALUES = {
     "first_order_by_side": (LagBySide(), ActuatorLag(), 0.2, 0.0),
     "by_side": (DelayBySide(), CommandDelay(), 0.17, 0.0),
     "deadband_by_side": (DeadbandBySide(), Deadband(), 0.3, 0.0),
-    "saturation_by_side": (SaturationBySide(2.0), Saturation(2.0), 0.7, 2.0),
+    "saturation_by_side": (SaturationBySide(Saturation(2.0)), Saturation(2.0), 0.7, 2.0),
     "rate_by_side": (RateBySide(), RateLimit(), 0.4, HARDEST_M_S2),
 }
 each = pytest.mark.parametrize("form", VALUES)

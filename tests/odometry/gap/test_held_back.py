@@ -38,6 +38,13 @@ def test_one_moving_piece_in_four_is_held_out(make_scene, resting_s, expected):
     assert sum(map(len, (*fitted, *held))) == len(scene)
 
 
+def test_pieces_of_a_slow_robot_are_those_of_a_fast_one(make_scene):
+    fast = resting(make_scene(4, duration_s=120.0), (28.0, 52.0))
+    slow = replace(fast, travel_m=fast.travel_m / 30)
+    (numbers,) = held_out_pieces([slow], CONFIG)
+    assert set(numbers) == {5, 9}
+
+
 def test_a_run_at_rest_cannot_be_held_out(make_scene):
     scene = resting(make_scene(4, duration_s=120.0), (0.0, 120.0))
     assert len(moving_pieces(scene, CONFIG.part_s)) == 0
