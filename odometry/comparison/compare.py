@@ -71,7 +71,7 @@ def compare(
     >>> compared.models
     ('differential_drive', 'icr')
     """
-    config = config or ComparisonConfig()
+    config = (config or ComparisonConfig()).with_stated_horizons()
     candidates = candidates_named(models)
     usable, left_out, found = _with_poses(
         [with_named_terrain(run, terrain) for run in runs], config

@@ -1,6 +1,6 @@
 """Settings of a comparison."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from odometry.config import LARGEST, SMALLEST, require, require_positive
@@ -63,3 +63,10 @@ class ComparisonConfig:
     def evaluated_m(self) -> tuple[float, ...]:
         """All horizons over which errors are taken: those requested, and those of the figures."""
         return tuple(sorted({*self.horizons_m, *CURVE_HORIZONS_M}))
+
+    def with_stated_horizons(self) -> "ComparisonConfig":
+        """With one training horizon throughout where horizons are what is compared."""
+        if not self.training_horizons_m or self.training.horizon_s:
+            return self
+        training = replace(self.training, horizon_m=self.training.travel_m)
+        return replace(self, training=training)

@@ -65,7 +65,7 @@ def training_horizon_errors(
     """
     free = [each for each in candidates if not all(p.known for p in each.model.parameters)]
     labels = [each.label for each in free]
-    own_m, others_m = config.training.horizon_m, config.training_horizons_m
+    own_m, others_m = config.training.travel_m, config.training_horizons_m
     found = []
     if others_m and not config.training.horizon_s:
         found += [HorizonErrors(own_m, summary) for summary in _summaries(compared, labels, config)]
@@ -73,7 +73,7 @@ def training_horizon_errors(
     for training_m in tqdm(
         others_m, desc="training horizons", unit="horizon", disable=None if show_progress else True
     ):
-        training = replace(config.training, horizon_m=training_m, horizon_s=0.0, fewest_windows=0)
+        training = replace(config.training, horizon_m=training_m, horizon_s=0.0)
         here = replace(config, training=training)
         models = fit_models(planned, free, here, fitted_to_all=fitted, show_progress=False)
         summaries = _summaries(evaluate_all(models, here), labels, here)

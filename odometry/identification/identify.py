@@ -123,7 +123,7 @@ def identify(
             )
             found = _identified(here, _counted(fit_to, bar), robot, given)
             kinds = None if found.apart else two_kinds(here, fit_to, found.fit)
-            terrains[name] = replace(found, kinds=kinds, horizon_m=cut.horizon_m)
+            terrains[name] = replace(found, kinds=kinds, horizon_m=cut.travel_m)
     return Identification(robot, terrains, window_config)
 
 

@@ -36,7 +36,7 @@ def short_windows(windows: Windows | Stretches, config: WindowConfig) -> str:
     """
     if isinstance(windows, Stretches):
         return ""
-    wanted, unit, length = config.horizon_m, "m", windows.travel_m
+    wanted, unit, length = config.travel_m, "m", windows.travel_m
     if config.horizon_s:
         wanted, unit, length = config.horizon_s, "s", _durations_s(windows)
     short = length < wanted * (1 - 1e-9)

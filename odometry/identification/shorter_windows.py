@@ -11,6 +11,7 @@ from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows, windows_of
 
 MORE = 1.2  # times the fewest windows are aimed at: gaps and sparse poses cost some
+FEWEST_WINDOWS = 30  # fewer show no spread of the parameters: six groups of five do
 LEAST_S = 4.0  # of a window: slip that wanders over seconds is no scatter of shorter ones
 
 
@@ -19,14 +20,16 @@ def enough_of(
 ) -> tuple[Windows, WindowConfig]:
     """The windows (K,) of one terrain of the runs, or more and shorter ones if they are too few.
 
-    No shorter than LEAST_S on average; with the settings by which they are cut.
+    Unless their horizon is stated. No shorter than LEAST_S on average; with the settings by which
+    they are cut.
     """
-    if config.horizon_s or not 0 < len(windows) < config.fewest_windows:
+    is_stated = bool(config.horizon_s) or config.horizon_m is not None
+    if is_stated or not 0 < len(windows) < FEWEST_WINDOWS:
         return windows, config
     lasted_s = float(windows.integrated(np.ones_like(windows.steps_s)).sum())
     each = min(config.stride, 1.0)
-    count = min(MORE * config.fewest_windows, lasted_s * each / LEAST_S)
-    horizon_m = min(float(windows.travel_m.sum()) * each / count, config.horizon_m)
+    count = min(MORE * FEWEST_WINDOWS, lasted_s * each / LEAST_S)
+    horizon_m = min(float(windows.travel_m.sum()) * each / count, config.travel_m)
     shorter = replace(config, horizon_m=horizon_m)
     found = windows_of(runs, shorter)
     found = found.where(found.terrain == windows.terrain[0])

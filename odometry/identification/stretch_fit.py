@@ -203,8 +203,8 @@ def stretches_for(runs: Sequence[Run], config: WindowConfig) -> Stretches:
     The noise of the positions is found from a simple model on stretches of USUAL_BY_TREADS_M. A
     horizon of `config` that is longer than these stretches is taken instead.
     """
-    first = stretches_of(runs, max(USUAL_BY_TREADS_M, config.horizon_m), config)
-    length_m = max(length_for(noise_of(first, runs[0].robot), first), config.horizon_m)
+    first = stretches_of(runs, max(USUAL_BY_TREADS_M, config.travel_m), config)
+    length_m = max(length_for(noise_of(first, runs[0].robot), first), config.travel_m)
     return stretches_of(runs, length_m, config)
 
 

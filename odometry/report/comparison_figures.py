@@ -88,7 +88,8 @@ def horizon_picture(
             text.set_parse_math(False)
 
     training = comparison.config.training
-    trained = f"{training.horizon_s:g} s" if training.horizon_s else f"{training.horizon_m:g} m"
+    usual = f"{training.travel_m:g} m" + (" or less" if training.horizon_m is None else "")
+    trained = f"{training.horizon_s:g} s" if training.horizon_s else usual
     return Picture(
         save_figure(
             folder / f"horizons_{file_name(robot, terrain)}.png", (_WIDTH_IN, height_in), draw

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from odometry.config import require, require_positive
 
+USUAL_M = 2.0  # of wheel travel, of a window whose horizon is not stated
+
 
 @dataclass(frozen=True)
 class WindowConfig:
@@ -11,16 +13,14 @@ class WindowConfig:
 
     Attributes
     ----------
-    horizon_m : float
-        Training horizon h_t of Baril 2020: wheel travel of a window.
+    horizon_m : float or None
+        Training horizon h_t of Baril 2020: wheel travel of a window. None is `USUAL_M`, and less
+        in `identify` and `compare` where a terrain has too few of such windows.
     horizon_s : float
         Duration of a window instead; 0 cuts by wheel travel.
     stride : float
         From the start of one window to the start of the next, in horizons; 1 makes distinct
         segments, as Baril 2020 has them.
-    fewest_windows : int
-        Where a terrain has fewer windows, `identify` and `compare` shorten `horizon_m` to have
-        more: fewer show no spread of the parameters (six groups of five do). 0 keeps the horizon.
     shortest : float
         A stretch shorter than a horizon still makes a window if it has this share of it.
     pose_gap_s : float
@@ -35,20 +35,23 @@ class WindowConfig:
     0.01
     """
 
-    horizon_m: float = 2.0
+    horizon_m: float | None = None
     horizon_s: float = 0.0
     stride: float = 1.0
-    fewest_windows: int = 30
     shortest: float = 0.1
     pose_gap_s: float = 0.5
     position_sigma_m: float = 0.02
     yaw_sigma_rad: float = 0.01
 
     def __post_init__(self) -> None:
-        require_positive(
-            self, "horizon_m", "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad"
-        )
+        require_positive(self, "stride", "pose_gap_s", "position_sigma_m", "yaw_sigma_rad")
+        if self.horizon_m is not None:
+            require_positive(self, "horizon_m")
         if self.horizon_s != 0:
             require_positive(self, "horizon_s")
-        require(self.fewest_windows >= 0, f"fewest_windows = {self.fewest_windows}, expected >= 0")
         require(0 < self.shortest <= 1, f"shortest = {self.shortest}, expected 0 to 1")
+
+    @property
+    def travel_m(self) -> float:
+        """Wheel travel of a window: `horizon_m`, or the usual one."""
+        return USUAL_M if self.horizon_m is None else self.horizon_m

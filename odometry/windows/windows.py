@@ -147,7 +147,7 @@ def _windows_of_record(record: Record, name: str, config: WindowConfig) -> Windo
     pose_s = record.pose_s
     travel_m = record.travel_m[record.pose_samples]
     measure, horizon = (
-        (pose_s, config.horizon_s) if config.horizon_s else (travel_m, config.horizon_m)
+        (pose_s, config.horizon_s) if config.horizon_s else (travel_m, config.travel_m)
     )
     found = [np.empty((0, 2), dtype=np.int64)]
     begins = np.flatnonzero(np.diff(record.stretch, prepend=-1))
@@ -191,7 +191,7 @@ def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfi
 
 
 def _no_window(runs: Sequence[Run], config: WindowConfig, left_out: Counter[str]) -> str:
-    wanted = f"{config.horizon_s:g} s" if config.horizon_s else f"{config.horizon_m:g} m"
+    wanted = f"{config.horizon_s:g} s" if config.horizon_s else f"{config.travel_m:g} m"
     longest = max(float(run.wheel_travel_m[-1]) for run in runs)
     return "; ".join(
         part

@@ -90,9 +90,9 @@ def print_identification(found: "Identification") -> None:
     for name, of_terrain in found.terrains.items():
         click.echo("\n".join(report(name, of_terrain)))
         windows, config = of_terrain.fit.windows, found.window_config
-        taken_m = of_terrain.horizon_m or config.horizon_m
+        taken_m = of_terrain.horizon_m or config.travel_m
         doubts = (
-            shortened(windows, config.horizon_m, taken_m),
+            shortened(windows, config.travel_m, taken_m),
             *notes(of_terrain.fit),
             turns_outside(of_terrain.fit, found.robot),
             *_assumed(of_terrain),

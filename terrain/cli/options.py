@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 if TYPE_CHECKING:
     from terrain.classification.features.network_features import NetworkFeatures
@@ -113,9 +112,7 @@ def window_options(command: Callable[..., None]) -> Callable[..., None]:
         "--horizon",
         "horizon_m",
         type=float,
-        default=2.0,
-        show_default=True,
-        help="Wheel travel of a window [m]; unless stated, less where there are too few windows.",
+        help="Wheel travel of a window [m]: 2, or less where there are too few of these.",
     )
     @click.option("--horizon-s", type=float, default=0.0, help="Duration of a window instead [s].")
     @click.option(
@@ -142,7 +139,7 @@ def window_options(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_windows(
         *,
-        horizon_m: float,
+        horizon_m: float | None,
         horizon_s: float,
         stride: float,
         position_sigma: float,
@@ -151,15 +148,12 @@ def window_options(command: Callable[..., None]) -> Callable[..., None]:
     ) -> None:
         from odometry.windows.config import WindowConfig
 
-        source = click.get_current_context().get_parameter_source("horizon_m")
-        is_stated = source is not ParameterSource.DEFAULT
         windows = WindowConfig(
             horizon_m=horizon_m,
             horizon_s=horizon_s,
             stride=stride,
             position_sigma_m=position_sigma,
             yaw_sigma_rad=yaw_sigma,
-            fewest_windows=0 if is_stated else WindowConfig.fewest_windows,
         )
         command(windows=windows, **others)
 

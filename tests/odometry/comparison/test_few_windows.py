@@ -19,7 +19,7 @@ SEEN = []
 @dataclass(frozen=True)
 class Spied(IdentifiedModel):
     def on(self, split, config, near=None):
-        SEEN.append((config.training.horizon_m, config.training.fewest_windows))
+        SEEN.append(config.training.horizon_m)
         return super().on(split, config, near)
 
 
@@ -38,7 +38,7 @@ def test_models_are_identified_on_more_windows_where_there_are_few():
     slow = slower(drive(3, duration_s=40.0), 5.0)
     (first, _) = splits([slow])
     found = training_windows(first.training, WindowConfig())
-    kept = training_windows(first.training, WindowConfig(fewest_windows=0))
+    kept = training_windows(first.training, WindowConfig(horizon_m=2.0))
     assert len(found) > 2 * len(kept)
     assert np.median(found.travel_m) < 1
 
@@ -47,7 +47,7 @@ def test_training_horizons_are_kept():
     SEEN.clear()
     config = ComparisonConfig(training_horizons_m=(5.0,))
     compare([drive(4)], [Spied(MODELS["icr_symmetric"])], config=config)
-    assert set(SEEN) == {(2.0, 30), (5.0, 0)}
+    assert set(SEEN) == {2.0, 5.0}
 
 
 def narrowest(compared, quantity):

@@ -72,7 +72,7 @@ def test_the_splits_and_settings_are_written_down(written, compared):
     ]
     used = content["splits"][0]["models"]["icr_symmetric"]["parameters"]
     assert used == dict(compared.split_models[0].predictors["icr_symmetric"].values)
-    assert content["settings"]["training"]["horizon_m"] == 2.0
+    assert content["settings"]["training"]["horizon_m"] is None
     assert content["settings"]["draws"] == 400
     assert len(content["fitness"]) == 4
     assert content["fitness"][0]["mean"] == pytest.approx(compared.fitness[0].fitness.mean)

@@ -99,7 +99,7 @@ def test_held_out_errors_are_of_other_runs_and_of_the_halves_of_one(make, ice):
 
 def test_without_enough_for_the_parts_there_is_no_held_out_error(ice):
     """Five windows determine five parameters; two or three would not determine nine numbers."""
-    config = WindowConfig(horizon_m=20.0, shortest=0.9, fewest_windows=0)
+    config = WindowConfig(horizon_m=20.0, shortest=0.9)
     found = identify([ice], "icr_symmetric", window_config=config, solver_config=ONE_START)
     assert len(found.terrains["ice"].fit.windows) == 1
     assert found.terrains["ice"].held_out is None

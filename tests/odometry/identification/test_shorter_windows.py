@@ -28,7 +28,7 @@ def lasted_s(found):
 
 
 def test_a_slow_robot_has_more_and_shorter_windows(slow):
-    few, more = identified(slow, fewest_windows=0), identified(slow)
+    few, more = identified(slow, horizon_m=2.0), identified(slow)
     assert len(few.fit.windows) < 5
     assert len(more.fit.windows) > 12
     assert more.horizon_m < 0.5
@@ -42,7 +42,7 @@ def test_a_slow_robot_has_more_and_shorter_windows(slow):
 def test_they_are_as_long_as_slip_wanders(slow):
     assert LEAST_S <= lasted_s(identified(slow)) < 1.5 * LEAST_S
     fast = drive(3, duration_s=20.0, noise_m=0.002)
-    assert lasted_s(identified(fast)) == pytest.approx(lasted_s(identified(fast, fewest_windows=0)))
+    assert lasted_s(identified(fast)) == pytest.approx(lasted_s(identified(fast, horizon_m=2.0)))
 
 
 def test_long_runs_keep_the_horizon():
@@ -54,6 +54,6 @@ def test_long_runs_keep_the_horizon():
 def test_few_windows_have_the_freedom_of_one_axis():
     """Two parameters turn the robot: three windows leave one number to judge their scatter by."""
     run = drive(3, duration_s=13.0, noise_m=0.01)
-    found = identified(run, fewest_windows=0)
+    found = identified(run, horizon_m=2.0)
     assert len(found.fit.windows) == 3
     assert found.fit.freedom.max() < 2.0

@@ -119,7 +119,7 @@ def test_windows_lie_in_stretches_and_reach_the_horizon(run, config):
         begin_s, end_s = run.pose.stamps_s[[first, last]]
         return end_s - begin_s if config.horizon_s else travel_between(run, begin_s, end_s)
 
-    horizon = config.horizon_s or config.horizon_m
+    horizon = config.horizon_s or config.travel_m
     for k in range(len(windows)):
         begin_s, end_s = inside_s[[windows.first_pose[k], windows.last_pose[k]]]
         assert windows.start_s[k] == begin_s
@@ -141,7 +141,7 @@ def test_windows_lie_in_stretches_and_reach_the_horizon(run, config):
 
 @given(run=runs(), config=configs)
 def test_no_stretch_that_could_be_a_window_is_lost(run, config):
-    horizon = config.horizon_s or config.horizon_m
+    horizon = config.horizon_s or config.travel_m
     windows = windows_or_skip([run], config)
     for stretch in stretches_of(run):
         begin_s, end_s = run.pose.stamps_s[[stretch[0], stretch[-1]]]

@@ -116,13 +116,13 @@ def test_the_windows_are_those_that_were_requested(command, curvy_run):
     assert 2 * numbers[0] - 2 <= numbers[2] <= 2 * numbers[0] + 1
 
 
-@pytest.mark.parametrize(("options", "fewest"), [([], 30), (["--horizon", "2"], 0)])
-def test_a_stated_horizon_is_kept_where_windows_are_few(options, fewest):
+@pytest.mark.parametrize(("options", "stated_m"), [([], None), (["--horizon", "2"], 2.0)])
+def test_a_stated_horizon_is_kept_where_windows_are_few(options, stated_m):
     seen = []
     click.command()(window_options(lambda **given: seen.append(given["windows"]))).main(
         options, standalone_mode=False
     )
-    assert seen[0].fewest_windows == fewest
+    assert seen[0].horizon_m == stated_m
 
 
 def test_the_same_call_writes_the_same_bytes(command, curvy_run):
