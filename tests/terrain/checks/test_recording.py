@@ -8,8 +8,8 @@ from odometry.checks.findings.finding import Level
 from odometry.run_span import Span
 from terrain.checks.recording import check_run, checked_run
 from terrain.classification.classifier import TerrainClassifier
+from tests.odometry.checks.copies.test_copied_turns import by_treads
 from tests.odometry.checks.drives import winding
-from tests.odometry.checks.test_copied_turns import by_treads
 
 
 def test_a_run_without_images_is_checked_as_ever(curvy_run):

@@ -13,7 +13,7 @@ from odometry.checks.treads.side_changes import side_changes
 from odometry.checks.unexplained.moments_of_spin import moments_of_spin
 from tests.odometry.checks.drives import PERIOD_S, drive, stepping
 from tests.odometry.checks.faulty import SENSORS, put, treads
-from tests.odometry.checks.test_scale_change import later
+from tests.odometry.checks.treads.test_scale_change import later
 
 
 def to_and_fro(seed=0):
