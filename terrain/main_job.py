@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from odometry.effects.catalogue import added_effects
-from odometry.effects.corrected import Added
-from odometry.effects.measured import shared_measurement
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.measured import shared_measurement
 from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept

@@ -25,7 +25,7 @@ def effect_parameters() -> set[tuple[str, str]]:
     """Names and units that are written out in the forms of effects."""
     calls = [
         node
-        for file in (ROOT / "odometry" / "effects").glob("*.py")
+        for file in (ROOT / "odometry" / "effects").rglob("*.py")
         for node in ast.walk(ast.parse(file.read_text("utf-8")))
         if isinstance(node, ast.Call) and ast.unparse(node.func) == "EffectParameter"
     ]

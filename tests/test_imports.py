@@ -105,6 +105,7 @@ ROOMS_IN_ORDER = {
         *("findings", "evidence", "treads", "imu", "units", "copies", "stamps", "poses"),
         *("settings", "unexplained"),
     ),
+    "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
     "terrain": ("camera", "region", "image_labels", "switch", "sources", "result", "live"),
 }
 
@@ -119,6 +120,14 @@ def test_rooms_import_in_the_order_of_the_story(package):
         for name, targets in files.items():
             back = {target for target in targets if target.rpartition(".")[0] in later}
             assert not back, name
+
+
+@pytest.mark.parametrize("package", ["odometry.checks", "odometry.effects"])
+def test_no_room_imports_the_files_that_join_the_rooms(package):
+    joining = {name for name in graph() if name.rpartition(".")[0] == package}
+    assert joining
+    rooms = {name: graph()[name] for name in graph() if name.startswith(f"{package}.")}
+    assert not [name for name in rooms.keys() - joining if rooms[name] & joining]
 
 
 def test_only_the_command_line_imports_click_and_nobody_else_exits():

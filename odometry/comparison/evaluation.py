@@ -10,9 +10,9 @@ from odometry.comparison.candidates import Predictor
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.split import Part, windows_of_parts
-from odometry.effects.corrected import Added, delay_s, seen_poses
-from odometry.effects.measured import robot_run, shared_measurement
-from odometry.effects.recorded import Reported
+from odometry.effects.interface.corrected import Added, delay_s, seen_poses
+from odometry.effects.interface.recorded import Reported
+from odometry.effects.measurement.measured import robot_run, shared_measurement
 from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import Fitness, fitness, measured_poses, open_loop

@@ -1,4 +1,4 @@
-"""Effects that can be added to a kinematic model, one file each.
+"""Effects that can be added to a kinematic model, one file each, by what they act on.
 
 Names are imported when they are first used.
 """

@@ -1,5 +1,5 @@
 from .catalogue import added_effects
-from .corrected import Corrected
+from .interface.corrected import Corrected
 
 __all__ = [
     "Corrected",

@@ -5,50 +5,71 @@ from typing import Any
 
 import numpy as np
 
-from odometry.effects.base import Effect
-from odometry.effects.by_side import (
+from odometry.effects.commands.by_side import (
     DeadbandBySide,
     DelayBySide,
     LagBySide,
     RateBySide,
     SaturationBySide,
 )
-from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
-from odometry.effects.corrected import Added
-from odometry.effects.course_for_yaw import CourseForYaw
-from odometry.effects.curvature import Curvature
-from odometry.effects.drive_limit import Deadband, RateLimit, Saturation
-from odometry.effects.gyroscope_error import GyroscopeBySpeedError, GyroscopeError
-from odometry.effects.history import History
-from odometry.effects.in_course import in_course
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.late_by_chance import LateByChance
-from odometry.effects.late_treads import ActuatorLag, CommandDelay
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.map_fault import DriftingMap, DriftingYaw, StretchedMap, TurningMap
-from odometry.effects.reference_fault import Compass
-from odometry.effects.reference_filter import FilteredPositions, SlowYaw, SmoothedPoses, SwayingMast
-from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
-from odometry.effects.reference_rounding import RoundedPositions
-from odometry.effects.reference_step import ClockStep
-from odometry.effects.residual import Residual
-from odometry.effects.residual_of_place import ResidualOfPlace
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.slope_drift import SlopeDrift
-from odometry.effects.slope_icr import SlopeByIcr
-from odometry.effects.straight_lines import StraightLines
-from odometry.effects.terrain import NewIcrs, Terrain
-from odometry.effects.time_course import UNBOUNDED_S, Course, FromAMoment, Gradual, InBursts, Spans
-from odometry.effects.time_offset import ClockDrift, TimeOffset
-from odometry.effects.tread_slip import (
+from odometry.effects.commands.drive_limit import Deadband, RateLimit, Saturation
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.commands.tread_slip import (
     SlipByAcceleration,
     SlipByDirection,
     SlipBySpeed,
     SlipOfLeftTread,
     SlipOfRightTread,
-    TractionLoss,
 )
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import (
+    UNBOUNDED_S,
+    Course,
+    FromAMoment,
+    Gradual,
+    InBursts,
+    Spans,
+)
+from odometry.effects.measurement.course_for_yaw import CourseForYaw
+from odometry.effects.measurement.gyroscope_error import GyroscopeBySpeedError, GyroscopeError
+from odometry.effects.measurement.late_by_chance import LateByChance
+from odometry.effects.measurement.map_fault import (
+    DriftingMap,
+    DriftingYaw,
+    StretchedMap,
+    TurningMap,
+)
+from odometry.effects.measurement.reference_fault import Compass
+from odometry.effects.measurement.reference_filter import (
+    FilteredPositions,
+    SlowYaw,
+    SmoothedPoses,
+    SwayingMast,
+)
+from odometry.effects.measurement.reference_outliers import (
+    FrozenPoses,
+    JumpingPoses,
+    ReferenceOutliers,
+)
+from odometry.effects.measurement.reference_rounding import RoundedPositions
+from odometry.effects.measurement.reference_step import ClockStep
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.straight_lines import StraightLines
+from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.motion.contact_effects import InertiaByContact, SlopeByContact
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.inertia_icr import InertiaByIndices
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.motion.slope_drift import SlopeDrift
+from odometry.effects.motion.slope_icr import SlopeByIcr
+from odometry.effects.motion.terrain import NewIcrs, Terrain
+from odometry.effects.motion.traction_loss import TractionLoss
+from odometry.effects.unknown.history import History
+from odometry.effects.unknown.residual import Residual
+from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.errors import ParameterError
 from odometry.parameter_covariance import finite_number
 

@@ -5,12 +5,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import CommandEffect, MotionEffect
-from odometry.effects.base_model import Base
-from odometry.effects.contact_change import ContactChange
-from odometry.effects.corrected import Added, corrected_twist, moved_twist, with_true_speeds
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import CommandEffect, MotionEffect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import (
+    Added,
+    corrected_twist,
+    moved_twist,
+    with_true_speeds,
+)
+from odometry.effects.motion.contact_change import ContactChange
+from odometry.effects.motion.inertia_icr import InertiaByIndices
+from odometry.effects.unknown.residual import Residual
 from odometry.models.icr import Icr, IcrByTerrain
 from odometry.models.inputs import Inputs
 

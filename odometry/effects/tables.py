@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from odometry.arrays import FloatArray
 from odometry.effects.catalogue import added_effects, effect_table
-from odometry.effects.corrected import Added, Corrected
+from odometry.effects.interface.corrected import Added, Corrected
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Corrected, corrected_twist, with_true_speeds
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Corrected, corrected_twist, with_true_speeds
 from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
@@ -41,7 +41,7 @@ def corrections_of(run: Run, parameters: ParameterSet) -> Mapping[str, Correctio
     ----------
     run : Run
         As recorded: effects on the measurement are undone by
-        `odometry.effects.measured.robot_run`.
+        `odometry.effects.measurement.measured.robot_run`.
     parameters : ParameterSet
 
     Raises

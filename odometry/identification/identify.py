@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
-from odometry.effects.corrected import Added
-from odometry.effects.measured import on_measurement, robot_run
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.measured import on_measurement, robot_run
 from odometry.effects.tables import effects_of
 from odometry.errors import IdentificationError, OdometryError, ParameterError
 from odometry.identification.fit import Fit

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from odometry.effects.corrected import Added
-from odometry.effects.measured import robot_run
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.measured import robot_run
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.preparation.pose_delay import without_pose_delay

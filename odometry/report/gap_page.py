@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.checks.findings.warned import faults_words
-from odometry.effects.base import Effect
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import CommandsInCourse, MotionInCourse
-from odometry.effects.reference_outliers import ReferenceOutliers
-from odometry.effects.time_course import InBursts
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import CommandsInCourse, MotionInCourse
+from odometry.effects.interface.time_course import InBursts
+from odometry.effects.measurement.reference_outliers import ReferenceOutliers
 from odometry.gap.answer.result import GapResult
 from odometry.gap.prepare.simulate import simulated_poses
 from odometry.gap.show.quantities import Share, held_out_share

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from scipy.spatial import cKDTree
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual_of_place import ResidualOfPlace
+from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.report.figure import save_figure
 from odometry.report.html import Picture

@@ -6,9 +6,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
-from odometry.effects.history import BOTH, History
-from odometry.effects.residual import COMPONENTS, TREADS, WORLD, Residual, basis_of, variable_of
-from odometry.effects.residual_of_place import ResidualOfPlace
+from odometry.effects.unknown.history import BOTH, History
+from odometry.effects.unknown.residual import (
+    COMPONENTS,
+    TREADS,
+    WORLD,
+    Residual,
+    basis_of,
+    variable_of,
+)
+from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.answer import WITHIN_95
 from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.gap.locate.region_words import noun_of, shown_unit

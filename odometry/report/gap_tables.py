@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.digits import three_figures, within_interval, within_sigma
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.answer.result import Closing, GapResult
 from odometry.gap.config import GapConfig
 from odometry.gap.locate.region_words import noun_of

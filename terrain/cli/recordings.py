@@ -102,7 +102,7 @@ def with_turns(runs: "Sequence[Run]") -> "list[Run]":
     RunFolderError
         If neither a yaw nor a yaw rate was measured on a run that has positions.
     """
-    from odometry.effects.measured import robot_run
+    from odometry.effects.measurement.measured import robot_run
 
     return [robot_run(_with_turns(run), ()) for run in runs]
 

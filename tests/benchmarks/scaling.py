@@ -20,8 +20,8 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 
 import odometry
 import terrain
-from odometry.effects.corrected import Added, Corrected
-from odometry.effects.curvature import Curvature
+from odometry.effects.interface.corrected import Added, Corrected
+from odometry.effects.motion.curvature import Curvature
 from odometry.estimation.imm.ekf_bank import EkfBank
 from odometry.estimation.imm.estimator import Imm
 from odometry.estimation.imm.markov import ModeChain

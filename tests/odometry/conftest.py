@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
-from odometry.effects.sensor_mount import LeverArm
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import LeverArm
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.result import Closing, Equivalent, GapResult, NamedEffect, Rival
 from odometry.gap.config import GapConfig
 from odometry.gap.locate.locate import locate

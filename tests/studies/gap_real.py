@@ -31,7 +31,7 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.effects.residual import Residual
+from odometry.effects.unknown.residual import Residual
 from odometry.errors import OdometryError
 from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.gap.config import GapConfig

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.effects.corrected import Added
-from odometry.effects.reference_step import ReferenceStep
-from odometry.effects.residual import Residual
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_step import ReferenceStep
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.next_drives import NextDrive, next_drives
 from odometry.gap.answer.result import Closing, Equivalent, NamedEffect, Rival
 from odometry.gap.config import GapConfig

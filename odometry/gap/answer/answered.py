@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.reference_outliers import ReferenceOutliers
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_outliers import ReferenceOutliers
 from odometry.gap.answer.answer import (
     are_explained,
     drives_apart,

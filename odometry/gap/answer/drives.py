@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.effects.base_model import Base
+from odometry.effects.interface.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.result import Equivalent
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, judge

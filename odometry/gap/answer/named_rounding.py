@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.corrected import Added
-from odometry.effects.reference_rounding import RoundedPositions
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_rounding import RoundedPositions
 from odometry.gap.answer.result import NamedEffect
 from odometry.gap.config import GapConfig
 from odometry.gap.name.verdict import within_noise

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from odometry.arrays import FloatArray
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import CommandsInCourse, MotionInCourse
-from odometry.effects.terrain import Terrain
-from odometry.effects.time_course import FromAMoment
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import CommandsInCourse, MotionInCourse
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.motion.terrain import Terrain
 from odometry.gap.answer.result import Equivalent
 from odometry.windows.dense import DenseWindows
 

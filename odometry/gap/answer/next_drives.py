@@ -14,10 +14,10 @@ import numpy as np
 from scipy.stats import norm
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist, reported_yaw_rate
-from odometry.effects.in_course import lasting
-from odometry.effects.reference_fault import FEW_HEADINGS
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added, corrected_twist, reported_yaw_rate
+from odometry.effects.interface.in_course import lasting
+from odometry.effects.measurement.reference_fault import FEW_HEADINGS
 from odometry.gap.answer.drives import Drive, drives_of, scene_of
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted

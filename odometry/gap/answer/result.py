@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.warned import RunFinding
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.next_drives import NextDrive
 from odometry.gap.locate.locate import Location
 from odometry.gap.name.verdict import Refusal

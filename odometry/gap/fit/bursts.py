@@ -11,13 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base import Effect
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
-from odometry.effects.time_course import InBursts, Spans, run_numbers
-from odometry.effects.tread_slip import SlipOfLeftTread, SlipOfRightTread, TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.tread_slip import SlipOfLeftTread, SlipOfRightTread
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import CommandsInCourse, MotionInCourse, in_course
+from odometry.effects.interface.time_course import InBursts, Spans, run_numbers
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.effects.base import Effect
+from odometry.effects.interface.base import Effect
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.statistic import gap_m, sure_sum

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual import TREADS, WORLD, Residual
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.unknown.residual import TREADS, WORLD, Residual
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.fit.fitter import Fitted, Fitter

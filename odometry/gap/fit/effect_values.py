@@ -5,9 +5,9 @@ Each gate returns "" where the effect passes, else the reason as a clause.
 
 import numpy as np
 
-from odometry.effects.base import EffectParameter
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import EffectParameter
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import Effect
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.fit.hypothesis import Hypothesis, own_values
 from odometry.gap.fit.least_cost import derived, least_cost
 from odometry.gap.fit.left_out import held_out, left_out_loss

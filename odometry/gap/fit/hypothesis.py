@@ -11,9 +11,9 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.effects.base import Effect, EffectParameter
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base import Effect, EffectParameter
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.derivative import whitened_changes, whitened_derivative
 from odometry.gap.prepare.measured import Measured

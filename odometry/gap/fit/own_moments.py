@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import CommandsInCourse, MotionInCourse, in_course
-from odometry.effects.reference_step import ReferenceStep
-from odometry.effects.time_course import FromAMoment
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import CommandsInCourse, MotionInCourse, in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.measurement.reference_step import ReferenceStep
 from odometry.gap.fit.bursts import is_in_bursts, with_events_of_run
 from odometry.gap.fit.own_steps import with_step_of_run
 from odometry.gap.fit.own_values import (

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist
-from odometry.effects.pose_stamps import breaks_s
-from odometry.effects.reference_step import OF_EACH, ReferenceStep
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added, corrected_twist
+from odometry.effects.measurement.pose_stamps import breaks_s
+from odometry.effects.measurement.reference_step import OF_EACH, ReferenceStep
 from odometry.gap.prepare.simulate import path_of, poses_on
 from odometry.windows.dense import DenseWindows, off_measured
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
-from odometry.effects.corrected import Added
-from odometry.effects.map_fault import OfEachRun
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
-from odometry.effects.time_course import run_numbers
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.time_course import run_numbers
+from odometry.effects.measurement.map_fault import OfEachRun
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses

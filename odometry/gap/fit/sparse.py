@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from sklearn.linear_model import LassoLarsIC
 
-from odometry.effects.residual import Residual
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.fit.fitter import Fitted, Fitter
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats.contingency import association, crosstab
 
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.locate.predictors import Predictor, groups_of, predictors
 from odometry.gap.locate.regions import Region, regions

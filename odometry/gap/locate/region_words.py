@@ -4,8 +4,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from odometry.effects.residual import Residual
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.unknown.residual import Residual
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 
 EVERYWHERE = "everywhere"
 

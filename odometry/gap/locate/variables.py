@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.geometry.angles import wrap
 from odometry.run import UNKNOWN
 from odometry.windows.dense import DenseWindows

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from odometry.effects.base import Effect
-from odometry.effects.residual import Residual
-from odometry.effects.time_course import FromAMoment, Gradual, InBursts
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.time_course import FromAMoment, Gradual, InBursts
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_moments import with_own_moments

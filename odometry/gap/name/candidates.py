@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from odometry.effects.base import Effect
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.recorded import Recorded, labels_of
-from odometry.effects.reference_fault import FEW_HEADINGS
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.recorded import Recorded, labels_of
+from odometry.effects.measurement.reference_fault import FEW_HEADINGS
 from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import reported_of

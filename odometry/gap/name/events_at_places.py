@@ -6,7 +6,7 @@ import numpy as np
 from sklearn.metrics import roc_auc_score
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.effects.time_course import InBursts
+from odometry.effects.interface.time_course import InBursts
 from odometry.gap.config import GapConfig
 from odometry.gap.name.places import finest_grid
 from odometry.windows.dense import DenseWindows

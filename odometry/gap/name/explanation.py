@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from odometry.effects.base import Effect
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import Effect
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.fit.contest import Judged, cost_of
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.name.verdict import Refusal

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.corrected import Added
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.residual import Residual
-from odometry.effects.sensor_mount import LeverArm
-from odometry.effects.time_course import FromAMoment
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.measurement.sensor_mount import LeverArm
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of, penalty
 from odometry.gap.fit.course import CHOSEN, best_course

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import CommandEffect
-from odometry.effects.by_side import DelayBySide
-from odometry.effects.corrected import Added, delay_s
-from odometry.effects.late_treads import ActuatorLag, CommandDelay
-from odometry.effects.residual import Residual
-from odometry.effects.time_offset import ClockDrift, TimeOffset
+from odometry.effects.commands.by_side import DelayBySide
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.interface.base import CommandEffect
+from odometry.effects.interface.corrected import Added, delay_s
+from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.evenness import Unevenness
 from odometry.gap.locate.region_words import noun_of

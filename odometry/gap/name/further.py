@@ -11,10 +11,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.residual import TREADS, Residual
-from odometry.effects.residual_variables import FURTHER, OF_TREADS, REPEATED, variable_of
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import TREADS, Residual
+from odometry.effects.unknown.residual_variables import FURTHER, OF_TREADS, REPEATED, variable_of
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.accepted_effects import Standing

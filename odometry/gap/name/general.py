@@ -9,10 +9,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.history import BOTH, LAGS_S, History
-from odometry.effects.reference_fault import all_round
-from odometry.effects.residual import (
+from odometry.effects.interface.base_model import Base
+from odometry.effects.measurement.reference_fault import all_round
+from odometry.effects.unknown.history import BOTH, LAGS_S, History
+from odometry.effects.unknown.residual import (
     ANGLES,
     COMPONENTS,
     HARMONICS,
@@ -21,7 +21,7 @@ from odometry.effects.residual import (
     Residual,
     variables_of,
 )
-from odometry.effects.residual_variables import REPEATED, WHAT_WENT_BEFORE
+from odometry.effects.unknown.residual_variables import REPEATED, WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
 from odometry.gap.name.places import maps
 from odometry.windows.dense import DenseWindows

@@ -6,9 +6,9 @@ from itertools import combinations
 
 import numpy as np
 
-from odometry.effects.base import Effect
-from odometry.effects.history import History
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import Effect
+from odometry.effects.unknown.history import History
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import cost_of, margin_of
 from odometry.gap.fit.effect_values import is_meant

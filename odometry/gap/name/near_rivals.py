@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from odometry.arrays import FloatArray
-from odometry.effects.residual import Residual
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, margin_of, penalty
 from odometry.gap.fit.fitter import Fitter

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.residual import TREADS, WORLD
-from odometry.effects.residual_of_place import AXES, ResidualOfPlace
+from odometry.effects.unknown.residual import TREADS, WORLD
+from odometry.effects.unknown.residual_of_place import AXES, ResidualOfPlace
 from odometry.gap.config import GapConfig
 from odometry.windows.dense import DenseWindows
 

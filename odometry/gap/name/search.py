@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from odometry.effects.base import Effect
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import Effect
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, judge, ranked
 from odometry.gap.fit.effect_values import is_the_effect

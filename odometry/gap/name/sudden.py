@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from odometry.effects.base import Effect
-from odometry.effects.in_course import in_course
-from odometry.effects.residual import Residual
-from odometry.effects.time_course import FromAMoment, Gradual
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base import Effect
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment, Gradual
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, judge
 from odometry.gap.fit.own_moments import observed_s

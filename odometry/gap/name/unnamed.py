@@ -8,12 +8,12 @@ from scipy.stats import binom
 from sklearn.metrics import roc_auc_score
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.history import History
-from odometry.effects.residual import ANGLES, OF_TREADS, Residual, variables_of
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
-from odometry.effects.residual_of_place import ResidualOfPlace
-from odometry.effects.time_course import InBursts
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.time_course import InBursts
+from odometry.effects.unknown.history import History
+from odometry.effects.unknown.residual import ANGLES, OF_TREADS, Residual, variables_of
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.gap.fit.bursts import InCourse, burst_effects
 from odometry.gap.fit.contest import Judged, judge, penalty
 from odometry.gap.fit.course import best_course

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.locate.predictors import Predictor

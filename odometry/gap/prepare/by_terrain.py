@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.effects.recorded import labels_of
+from odometry.effects.interface.recorded import labels_of
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration, calibrated
 from odometry.gap.prepare.pieces import numbered_pieces

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
+from odometry.effects.interface.base_model import Base
 from odometry.errors import GapError
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.derivative import whitened_derivative

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.prepare.responses import Responses, whiten, whitened
 from odometry.gap.prepare.simulate import rows_of_gyroscope, rows_of_poses
 from odometry.windows.dense import DenseWindows

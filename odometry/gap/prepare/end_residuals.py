@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import residuals

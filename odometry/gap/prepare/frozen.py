@@ -6,7 +6,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.effects.base_model import Base
+from odometry.effects.interface.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import residuals, simulated_poses

@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.pieces import numbered_pieces

@@ -7,9 +7,13 @@ import numpy as np
 from scipy.stats import binomtest, fisher_exact
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.reference_outliers import FrozenPoses, JumpingPoses, ReferenceOutliers
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_outliers import (
+    FrozenPoses,
+    JumpingPoses,
+    ReferenceOutliers,
+)
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.frozen import Isolated, frozen, isolated

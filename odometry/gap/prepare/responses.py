@@ -6,11 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.effects.base import MeasurementEffect
-from odometry.effects.base_model import Base
 from odometry.effects.chain import Chain
-from odometry.effects.corrected import Added, reported_yaw_rate, seen_poses
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base import MeasurementEffect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added, reported_yaw_rate, seen_poses
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.prepare.simulate import (
     TOGETHER,
     measured_s,

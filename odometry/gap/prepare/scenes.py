@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import BoolArray, IntArray
-from odometry.effects.reference_outliers import JumpingPoses
+from odometry.effects.measurement.reference_outliers import JumpingPoses
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.frozen import Isolated

@@ -5,16 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import FloatArray, components_last
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import (
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import (
     Added,
     corrected_twist,
     delay_s,
     reported_yaw_rate,
     seen_poses,
 )
-from odometry.effects.recorded import Reported
-from odometry.effects.time_course import run_numbers
+from odometry.effects.interface.recorded import Reported
+from odometry.effects.interface.time_course import run_numbers
 from odometry.windows.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.motion import level_path
 

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.stats import t
 
 from odometry.arrays import FloatArray
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added, corrected_twist
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import mean_variances

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.effects.base_model import Base
+from odometry.effects.interface.base_model import Base
 from odometry.errors import GapError, ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named

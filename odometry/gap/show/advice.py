@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from odometry.checks.findings.warned import sensor_faults
-from odometry.effects.drive_limit import DriveLimit
-from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.late_treads import ActuatorLag, CommandDelay
-from odometry.effects.residual import Residual
+from odometry.effects.commands.drive_limit import DriveLimit
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.measurement.gyroscope_error import GyroscopeError
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.result import GapResult
 from odometry.gap.show.unknown import how_to_separate, where_to_look
 

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 
 from odometry.effects.catalogue import effect_table
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import lasting
-from odometry.effects.map_fault import OfEachRun
-from odometry.effects.reference_outliers import ReferenceOutliers
-from odometry.effects.reference_rounding import RoundedPositions
-from odometry.effects.reference_step import ReferenceStep
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
-from odometry.effects.terrain import SHIFTED, Terrain
-from odometry.effects.time_course import InBursts
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import lasting
+from odometry.effects.interface.time_course import InBursts
+from odometry.effects.measurement.map_fault import OfEachRun
+from odometry.effects.measurement.reference_outliers import ReferenceOutliers
+from odometry.effects.measurement.reference_rounding import RoundedPositions
+from odometry.effects.measurement.reference_step import ReferenceStep
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.terrain import SHIFTED, Terrain
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.answer.result import Closing, GapResult, NamedEffect
 from odometry.gap.locate.locate import Region
 from odometry.gap.prepare.statistic import Gap

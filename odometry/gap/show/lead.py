@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.reference_rounding import RoundedPositions
-from odometry.effects.residual import Residual
+from odometry.effects.measurement.reference_rounding import RoundedPositions
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.result import Equivalent, GapResult, NamedEffect
 from odometry.gap.locate.region_words import noun_of_residual
 from odometry.gap.name.verdict import Refusal

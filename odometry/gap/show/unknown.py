@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from odometry.effects.residual import Residual
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.locate.region_words import noun_of
 
 AT_SPEEDS = "several constant speeds, straight on and in one turn"

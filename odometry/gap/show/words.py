@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.checks.findings.warned import faults_words
 from odometry.digits import within_interval
-from odometry.effects.base_model import Base
-from odometry.effects.residual import Residual
+from odometry.effects.interface.base_model import Base
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.result import GapResult, NamedEffect
 from odometry.gap.locate.region_words import EVERYWHERE, noun_of, noun_of_residual
 from odometry.gap.prepare.calibration import Calibration

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.base_model import Base
+from odometry.effects.interface.base_model import Base
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.run import Robot

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.effects.recorded import Reported
+from odometry.effects.interface.recorded import Reported
 
 PERIOD_S = 0.1
 

@@ -5,23 +5,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.effects.base import CommandEffect, MeasurementEffect, MotionEffect
-from odometry.effects.base_model import Base
 from odometry.effects.catalogue import BY_FORM, EFFECTS, added_effects, effect_table
-from odometry.effects.corrected import (
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base import CommandEffect, MeasurementEffect, MotionEffect
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import (
     Added,
     corrected_twist,
     delay_s,
     reported_yaw_rate,
     seen_poses,
 )
-from odometry.effects.in_course import in_course
-from odometry.effects.residual import Residual
-from odometry.effects.terrain import Terrain
-from odometry.effects.time_course import FromAMoment, Gradual
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.tread_slip import TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment, Gradual
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.terrain import Terrain
+from odometry.effects.motion.traction_loss import TractionLoss
+from odometry.effects.unknown.residual import Residual
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Corrected
+from odometry.effects.interface.corrected import Corrected
 from odometry.effects.tables import effects_of, model_of, table_of
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS

@@ -7,8 +7,8 @@ import pytest
 
 from odometry.dead_reckoning import dead_reckon
 from odometry.effects.catalogue import added_effects
-from odometry.effects.corrected import Corrected
-from odometry.effects.measured import robot_run
+from odometry.effects.interface.corrected import Corrected
+from odometry.effects.measurement.measured import robot_run
 from odometry.errors import ParameterError
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.corrections import corrections_of

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.reference_outliers import JumpingPoses
-from odometry.effects.residual import Residual
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_outliers import JumpingPoses
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer.answer import (
     are_explained,
     drives_apart,

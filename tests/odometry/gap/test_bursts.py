@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.effects.catalogue import added_effects, effect_table
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import in_course
-from odometry.effects.time_course import InBursts
-from odometry.effects.tread_slip import SlipOfLeftTread
+from odometry.effects.commands.tread_slip import SlipOfLeftTread
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import InBursts
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.bursts import burst_effects, states
 from odometry.gap.fit.contest import judge

@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.effects.contact_effects import InertiaByContact
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.motion.contact_effects import InertiaByContact
 from odometry.gap.name.candidates import contact_effects, of_the_same_robot, quick_effects
 
 LOSS = ("traction_loss", "k_m", "from_a_moment")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import ttest_1samp
 
-from odometry.effects.corrected import Added
-from odometry.effects.sensor_mount import HeadingOffset
-from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import HeadingOffset
+from odometry.effects.motion.slope_icr import SlopeByIcr
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import margin_of, penalty, ranked
 from odometry.gap.fit.fitter import Fitter

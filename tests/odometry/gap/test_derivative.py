@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
-from odometry.effects.curvature import Curvature
-from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.late_treads import ActuatorLag
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.residual import COMPONENTS, Residual
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.tread_slip import SlipBySpeed
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.late_treads import ActuatorLag
+from odometry.effects.commands.tread_slip import SlipBySpeed
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.measurement.gyroscope_error import GyroscopeError
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.contact_effects import InertiaByContact, SlopeByContact
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.inertia_icr import InertiaByIndices
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.unknown.residual import COMPONENTS, Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.hypothesis import Hypothesis
 from odometry.gap.prepare.measured import measured_of

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from odometry.effects.catalogue import EFFECTS
-from odometry.effects.corrected import Added
-from odometry.effects.late_treads import CommandDelay
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.map_fault import DriftingMap
-from odometry.effects.residual import Residual
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.terrain import NewIcrs
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.commands.late_treads import CommandDelay
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.map_fault import DriftingMap
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.motion.terrain import NewIcrs
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.answer import answer
 from odometry.gap.answer.equivalent import equivalents
 from odometry.gap.answer.result import Equivalent

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.evenness import Unevenness, between_pieces, unevenness
 from odometry.gap.fit.fitter import Fitter

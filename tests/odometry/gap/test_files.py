@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from odometry.effects.catalogue import added_effects
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import in_course
-from odometry.effects.terrain import Terrain
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.tread_slip import TractionLoss
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.terrain import Terrain
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.answer.result import NamedEffect, Rival
 from odometry.gap.prepare.statistic import Gap
 from odometry.gap.show.files import write_gap

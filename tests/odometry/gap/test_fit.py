@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.sensor_mount import LeverArm
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge, penalty
 from odometry.gap.fit.fitter import Fitter

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import EffectParameter, MotionEffect
-from odometry.effects.corrected import Added
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.interface.base import EffectParameter, MotionEffect
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.inertia_icr import InertiaByIndices
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import calibrated

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.effects.contact_effects import InertiaByContact
-from odometry.effects.inertia_icr import InertiaByIndices
-from odometry.effects.residual import Residual
+from odometry.effects.motion.contact_effects import InertiaByContact
+from odometry.effects.motion.inertia_icr import InertiaByIndices
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.explanation import Explanation
 

@@ -5,13 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.contact_effects import SlopeByContact
-from odometry.effects.corrected import Added
-from odometry.effects.curvature import Curvature
-from odometry.effects.in_course import in_course
-from odometry.effects.residual import Residual
-from odometry.effects.time_course import InBursts
-from odometry.effects.tread_slip import SlipBySpeed, TractionLoss
+from odometry.effects.commands.tread_slip import SlipBySpeed
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import InBursts
+from odometry.effects.motion.contact_effects import SlopeByContact
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.traction_loss import TractionLoss
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.fit.evenness import Unevenness

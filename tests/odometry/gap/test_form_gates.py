@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.by_side import DelayBySide
-from odometry.effects.corrected import Added
-from odometry.effects.curvature import Curvature
-from odometry.effects.late_treads import ActuatorLag, CommandDelay
-from odometry.effects.sensor_mount import HeadingOffset
-from odometry.effects.time_offset import ClockDrift, TimeOffset
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.by_side import DelayBySide
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import HeadingOffset
+from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.motion.curvature import Curvature
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.effect_values import essence_spans_none
 from odometry.gap.name.form_gates import (

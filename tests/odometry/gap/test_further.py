@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.residual import Residual
-from odometry.effects.residual_variables import FURTHER, REPEATED
+from odometry.effects.unknown.residual import Residual
+from odometry.effects.unknown.residual_variables import FURTHER, REPEATED
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter

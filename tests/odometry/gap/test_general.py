@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.history import HISTORY
-from odometry.effects.residual import (
+from odometry.effects.unknown.history import HISTORY
+from odometry.effects.unknown.residual import (
     ANGLES,
     COMPONENTS,
     HARMONICS,
@@ -15,8 +15,8 @@ from odometry.effects.residual import (
     VARIABLES,
     variables_of,
 )
-from odometry.effects.residual_of_place import PLACE
-from odometry.effects.residual_variables import FURTHER, WHAT_WENT_BEFORE
+from odometry.effects.unknown.residual_of_place import PLACE
+from odometry.effects.unknown.residual_variables import FURTHER, WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
 from odometry.gap.name.general import general_candidates, shares_of_motion, single_candidates
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.late_treads import CommandDelay
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.commands.late_treads import CommandDelay
+from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.prepare.calibration import calibrated

@@ -6,13 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.curvature import Curvature
-from odometry.effects.in_course import in_course
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.residual import ANGLES, OF_TREADS, TREADS, VARIABLES, Residual
-from odometry.effects.time_course import FromAMoment, InBursts
-from odometry.effects.tread_slip import SlipBySpeed, TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.tread_slip import SlipBySpeed
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment, InBursts
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.motion.traction_loss import TractionLoss
+from odometry.effects.unknown.residual import ANGLES, OF_TREADS, TREADS, VARIABLES, Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.reference_outliers import JumpingPoses
+from odometry.effects.measurement.reference_outliers import JumpingPoses
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.jumps import jumps
 from odometry.gap.prepare.outliers import closes, outliers_of

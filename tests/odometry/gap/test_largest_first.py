@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.residual import Residual
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.name.names import _largest_first
 from odometry.gap.name.search import _beside

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.effects.drive_limit import Deadband
-from odometry.effects.in_course import in_course
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.tread_slip import TractionLoss
+from odometry.effects.commands.drive_limit import Deadband
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import least_cost as module
 from odometry.gap.fit.hypothesis import Hypothesis

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.effects.residual import Residual
-from odometry.effects.sensor_mount import HeadingOffset
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.measurement.sensor_mount import HeadingOffset
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.name import near_rivals
 from odometry.gap.name.near_rivals import undecided

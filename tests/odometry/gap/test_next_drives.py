@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import in_course
-from odometry.effects.late_treads import ActuatorLag, CommandDelay
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.reference_fault import Compass
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.slope_icr import SlopeByIcr
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.tread_slip import TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.measurement.reference_fault import Compass
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.motion.slope_icr import SlopeByIcr
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.answer.drives import drives_of, scene_of
 from odometry.gap.answer.next_drives import (
     as_driven,

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.in_course import in_course
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.tread_slip import TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit import own_moments
 from odometry.gap.fit.fitter import Fitter

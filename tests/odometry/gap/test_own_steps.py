@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.reference_step import ClockStep
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.reference_step import ClockStep
 from odometry.gap.fit.own_moments import observed_s, with_own_moments
 from odometry.gap.prepare.statistic import gap_of
 

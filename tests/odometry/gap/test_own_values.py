@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.residual import Residual
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.course import _losses as run_losses
 from odometry.gap.fit.course import best_course

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.residual import COMPONENTS, Residual
-from odometry.effects.sensor_mount import LeverArm
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.gyroscope_error import GyroscopeError
+from odometry.effects.measurement.sensor_mount import LeverArm
+from odometry.effects.unknown.residual import COMPONENTS, Residual
 from odometry.gap.prepare.responses import columns_of, simulated_scenes
 from odometry.gap.prepare.simulate import whitened_residuals
 from odometry.windows.averaged import averaged_windows

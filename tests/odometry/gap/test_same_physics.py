@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.effects.base import EffectParameter, MotionEffect
-from odometry.effects.contact_effects import InertiaByContact, SlopeByContact
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base import EffectParameter, MotionEffect
+from odometry.effects.motion.contact_effects import InertiaByContact, SlopeByContact
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.hypothesis import Hypothesis, own_values

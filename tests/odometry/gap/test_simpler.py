@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.curvature import Curvature
-from odometry.effects.lateral_skid import LateralSkid
-from odometry.effects.sensor_mount import LeverArm
-from odometry.effects.terrain import NewIcrs
-from odometry.effects.time_offset import ClockDrift, TimeOffset
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import LeverArm
+from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.lateral_skid import LateralSkid
+from odometry.effects.motion.terrain import NewIcrs
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged
 from odometry.gap.name.explanation import Explanation

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
 from odometry.gap.prepare.simulate import residuals, simulated_poses
 from odometry.geometry import se2

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from odometry.effects.in_course import in_course
-from odometry.effects.time_course import FromAMoment, Gradual
-from odometry.effects.time_offset import TimeOffset
-from odometry.effects.tread_slip import TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment, Gradual
+from odometry.effects.measurement.time_offset import TimeOffset
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name.accepted_effects import Standing

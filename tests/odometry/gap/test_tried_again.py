@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from odometry.effects.contact_effects import SlopeByContact
-from odometry.effects.residual import Residual
-from odometry.effects.slope_icr import SlopeByIcr
+from odometry.effects.motion.contact_effects import SlopeByContact
+from odometry.effects.motion.slope_icr import SlopeByIcr
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.names import _tried_again
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.corrected import Added
-from odometry.effects.history import History
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.history import History
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import ranked
 from odometry.gap.fit.fitter import Fitter

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.base_model import Base
-from odometry.effects.corrected import Added
-from odometry.effects.curvature import Curvature
-from odometry.effects.in_course import in_course
-from odometry.effects.sensor_mount import HeadingOffset
-from odometry.effects.slope_icr import SlopeByIcr
-from odometry.effects.time_course import FromAMoment
-from odometry.effects.tread_slip import TractionLoss
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.measurement.sensor_mount import HeadingOffset
+from odometry.effects.motion.curvature import Curvature
+from odometry.effects.motion.slope_icr import SlopeByIcr
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.effect_values import is_the_effect, is_there, within_bounds
 from odometry.gap.fit.fitter import Fitted

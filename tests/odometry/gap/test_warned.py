@@ -8,9 +8,9 @@ import pytest
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.findings.warned import faults_of, faults_words
-from odometry.effects.corrected import Added
-from odometry.effects.gyroscope_error import GyroscopeError
-from odometry.effects.late_treads import ActuatorLag
+from odometry.effects.commands.late_treads import ActuatorLag
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.gyroscope_error import GyroscopeError
 from odometry.gap.answer.result import NamedEffect
 from odometry.gap.show.advice import faults_of_sensors
 from odometry.gap.show.files import content_of

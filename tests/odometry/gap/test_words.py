@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.corrected import Added
-from odometry.effects.sensor_mount import HeadingOffset, LeverArm
-from odometry.effects.time_offset import TimeOffset
+from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
+from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.gap.answer.next_drives import NextDrive
 from odometry.gap.answer.result import Equivalent, NamedEffect
 from odometry.gap.prepare.statistic import Gap

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
-from odometry.effects.history import HISTORY
-from odometry.effects.residual import VARIABLES, Residual
-from odometry.effects.residual_of_place import PLACE, ResidualOfPlace
-from odometry.effects.residual_variables import FURTHER
+from odometry.effects.unknown.history import HISTORY
+from odometry.effects.unknown.residual import VARIABLES, Residual
+from odometry.effects.unknown.residual_of_place import PLACE, ResidualOfPlace
+from odometry.effects.unknown.residual_variables import FURTHER
 from odometry.gap.answer.result import Equivalent
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.statistic import Gap

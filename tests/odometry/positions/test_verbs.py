@@ -7,7 +7,7 @@ import pytest
 
 from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
-from odometry.effects.measured import robot_run
+from odometry.effects.measurement.measured import robot_run
 from odometry.gap.gap import find_gap
 from odometry.geometry.angles import wrap
 from odometry.identification.identify import identify

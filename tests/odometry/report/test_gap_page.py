@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from odometry.digits import three_figures
-from odometry.effects.corrected import Added
-from odometry.effects.history import History
-from odometry.effects.in_course import in_course
-from odometry.effects.reference_outliers import ReferenceOutliers
-from odometry.effects.residual_of_each_run import ResidualOfEachRun
-from odometry.effects.time_course import InBursts
-from odometry.effects.wheel_scale import WheelScale
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import InBursts
+from odometry.effects.measurement.reference_outliers import ReferenceOutliers
+from odometry.effects.unknown.history import History
+from odometry.effects.unknown.residual_of_each_run import ResidualOfEachRun
 from odometry.gap.config import GapConfig
 from odometry.gap.locate.locate import Location, Predictor
 from odometry.gap.locate.variables import Variable

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.corrected import Added
-from odometry.effects.residual_of_place import ResidualOfPlace
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.result import NamedEffect
 from odometry.report.gap_places import NEAR, map_of
 from odometry.report.gap_shapes import shape_pictures

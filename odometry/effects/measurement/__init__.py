@@ -1,0 +1,1 @@
+"""Effects on what is measured: faults of the reference, its stamps, its map, the gyroscope."""

@@ -1,0 +1,1 @@
+"""Effects on the motion of the robot: terrains, turns, slopes, inertia, traction."""
