@@ -40,7 +40,7 @@ class SlipBySpeed(TreadSlip):
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
         """Of slow robots at the fastest speed recorded."""
-        return (cls(min(recorded.fastest_m_s, 1.0)),)
+        return (cls(min(recorded.fastest_m_s, 1.0) or 1.0),)
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

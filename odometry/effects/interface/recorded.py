@@ -70,8 +70,8 @@ class Recorded:
 
 
 def crawling(fastest_m_s: float) -> float:
-    """Share of CRAWLING_M_S that a fastest speed is, 1 at most."""
-    return min(1.0, fastest_m_s / CRAWLING_M_S)
+    """Share of CRAWLING_M_S that a fastest speed is, 1 at most; 1 of a robot at rest, too."""
+    return min(1.0, fastest_m_s / CRAWLING_M_S) or 1.0
 
 
 def labels_of(inputs: Inputs) -> set[str]:

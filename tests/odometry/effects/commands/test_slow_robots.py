@@ -64,3 +64,8 @@ def test_of_other_robots_it_is_as_it_was(form, bench):
 def test_words_say_on_which_side_a_slow_robot_has_its_highest_speed(bench):
     effect, _ = offered(SaturationBySide, bench, FASTEST_M_S)
     assert effect.in_words_at(np.array([0.8, 1.0]) * FASTEST_M_S).endswith("on the left alone")
+
+
+@pytest.mark.parametrize("form", [Deadband, RateLimit, SlipBySpeed])
+def test_of_a_robot_at_rest_it_is_as_of_others(form, bench):
+    assert offered(form, bench, 0.0)[0].parameters == form().parameters
