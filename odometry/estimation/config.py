@@ -19,6 +19,9 @@ class IcrEkfConfig:
         reflections): the covariance of an estimate holds them, the filter goes on without. Where
         it is 0 and positions scatter for certain, `terrain.run_odometry` takes what the recording
         shows of them.
+    position_step_m : float
+        Step to which positions are rounded: one that stays the same while the robot drives so far
+        is no frozen one. 0 is none; `terrain.run_odometry` takes what the recording shows.
     velocity_sigma_m_s, yaw_rate_sigma_rad_s : float
         Standard deviation of a measured velocity.
     pose_delay_s : float
@@ -90,6 +93,7 @@ class IcrEkfConfig:
     position_sigma_m: float = 0.05
     yaw_sigma_rad: float = 0.05
     lasting_sigma_m: float = 0.0
+    position_step_m: float = 0.0
     pose_delay_s: float = 0.0
     velocity_sigma_m_s: float = 0.05
     yaw_rate_sigma_rad_s: float = 0.02
@@ -120,6 +124,7 @@ class IcrEkfConfig:
         require_positive(self, *positive, "yaw_rate_sigma_rad_s", "reset_sigma_widths")
         for name in (
             "lasting_sigma_m",
+            "position_step_m",
             "pose_delay_s",
             "position_noise",
             "yaw_noise",

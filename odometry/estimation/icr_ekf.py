@@ -130,7 +130,7 @@ class IcrEkf:
             added_speeds_m_s=added_speeds,
             added_twist=added_twist,
             course=course,
-            watch=sensor_watch.begun(frame, belief) if config.watch_sensors else None,
+            watch=sensor_watch.begun(frame, belief, config),
         )
 
     def step(self, estimate: Estimate, frame: Frame, terrain: str | Footing) -> Estimate:

@@ -32,8 +32,6 @@ from odometry.estimation.other_places import Others, left, return_event, returne
 from odometry.estimation.transition import YAW
 from odometry.frames import Frame
 
-OF_POSITION = 2  # numbers of a pose without yaw
-
 
 class Seen(NamedTuple):
     """The fields of an estimate that a pose changes, see `Estimate`."""
@@ -180,10 +178,10 @@ class PoseUpdate:
 def _updated(belief: Gaussian, measured: Measurement) -> Updated:
     """As of `updated`; positions teach no ICRs and slip factors where the heading is not known.
 
-    A way along a wrong heading is measured too short, by the cosine of the error, whatever its
-    sign: linearised, the robot would have slipped.
+    A way along a wrong heading is measured too short, whatever its sign: linearised, that is slip.
     """
-    if len(measured.residual) == OF_POSITION and belief[1][YAW, YAW] > UNKNOWN_RAD**2:
+    has_yaw = len(measured.residual) != 2
+    if not has_yaw and belief[1][YAW, YAW] > UNKNOWN_RAD**2:
         return updated_beside(belief, measured, OF_TERRAIN)
     return updated(belief, measured)
 

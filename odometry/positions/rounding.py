@@ -19,6 +19,7 @@ BAND = (MOST_STEP_M / LEAST_STEP_M) ** (1 / BANDS)  # of steps that are tried to
 BIN = 1 / 16  # of the least step of a band
 FINER = 4  # frequencies than positions resolve
 MOST_BINS = 2**17  # of a transform: steps of 0.02 m are looked for on 160 m, of 0.5 m on 4 km
+FEWEST_CHANGES = 6  # that are whole multiples of the least: one in 10^7 by chance
 AROUND_S = 1.0  # to each side of a position, of its neighbours
 LEAST_MOVED = 2.0  # steps that the neighbours of a position must span
 LEAST_POSES = 40  # of which these are
@@ -45,6 +46,34 @@ def rounding_step_m(stamps_s: FloatArray, positions: FloatArray) -> float:
     """
     found = [step for axis in positions.T if (step := _step_of(stamps_s, axis)) is not None]
     return max(found) if found and min(found) > 0 else 0.0
+
+
+def steps_m(stamps_s: FloatArray, positions: FloatArray) -> FloatArray:
+    """Steps (2,) of x and y of which all positions (M, 2) are multiples; else of `rounding_step_m`.
+
+    A coordinate that hardly changes has the step of the other one. Zeros where there are none.
+    """
+    exact = [_multiples_of(column) for column in positions.T]
+    known = [step for step in exact if step is not None]
+    if known and min(known) > 0:
+        return np.array([max(known) if step is None else step for step in exact])
+    return np.full(2, rounding_step_m(stamps_s, positions))
+
+
+def _multiples_of(values: FloatArray) -> float | None:
+    """The step of which all values (M,) are multiples, apart from a constant.
+
+    0 without one; None where fewer than FEWEST_CHANGES changes show none.
+    """
+    changes = np.abs(np.diff(values))
+    changes = changes[changes > 1e-9 * max(1.0, float(np.abs(values).max()))]
+    if len(changes) < FEWEST_CHANGES:
+        return None
+    step = float(changes.min())
+    counts = changes / step
+    whole = np.abs(counts - np.round(counts)) < 0.02
+    small = changes < 10 * step
+    return step if whole[small].mean() > 0.98 and small.mean() > 0.3 else 0.0
 
 
 def _step_of(stamps_s: FloatArray, places_m: FloatArray) -> float | None:

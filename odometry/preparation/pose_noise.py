@@ -1,4 +1,4 @@
-"""Noise of poses that the recording shows: scattered positions, and interpolated poses."""
+"""Noise of poses that the recording shows: of scatter, of rounding, of interpolation."""
 
 import math
 from dataclasses import replace
@@ -9,6 +9,7 @@ from odometry.checks.poses.position_noise import position_noise_m
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.preparation.lasting_errors import lasting_sigma_m
+from odometry.preparation.rounded_positions import with_rounding
 from odometry.run import Run
 from odometry.windows.interpolated import poses_per_measured_one
 
@@ -20,9 +21,10 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
 
     The noise of positions counts where they show it for certain, and where it is more than
     `position_sigma_m`: a filter that trusts them too far follows their noise, and learns ICRs
-    from it. Where n poses were interpolated from one measurement, its variance is n times as
-    large: together they say what one measured pose says. Unless `config` is `causal` or does not
-    watch its sensors.
+    from it. Where positions were rounded and that is more than their scatter, it counts instead.
+    Where n poses were interpolated from one measurement, its variance is n times as large:
+    together they say what one measured pose says. Unless `config` is `causal` or does not watch
+    its sensors.
 
     Returns
     -------
@@ -37,10 +39,15 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
     if used is None:
         return config, ()
     stamps_s, positions = run.pose.stamps_s[used], run.pose.stack("x", "y")[used]
-    config, scattered = _scattered(evidence, stamps_s, positions, config)
+    rounded, of_rounding = with_rounding(stamps_s, positions, config)
+    # a second difference of rounded positions makes at most 0.6 of their step of scatter
+    least_m = max(rounded.position_sigma_m, rounded.position_step_m)
+    config, noticed = _scattered(evidence, stamps_s, positions, config, least_m)
+    if not noticed:
+        config, noticed = rounded, of_rounding
     count = poses_per_measured_one(stamps_s, positions)
     if count == 1:
-        return config, scattered
+        return config, noticed
     event = FilterEvent(
         "interpolated_poses",
         float(stamps_s[0]),
@@ -52,14 +59,19 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
         config,
         position_sigma_m=config.position_sigma_m * math.sqrt(count),
         yaw_sigma_rad=config.yaw_sigma_rad * math.sqrt(count),
-    ), (*scattered, event)
+    ), (*noticed, event)
 
 
 def _scattered(
-    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray, config: IcrEkfConfig
+    evidence: Evidence,
+    stamps_s: FloatArray,
+    positions: FloatArray,
+    config: IcrEkfConfig,
+    least_m: float,
 ) -> Noise:
+    """With the scatter of positions (M, 2) as their noise, where it is more than `least_m`."""
     sigma_m = position_noise_m(evidence, stamps_s, positions)
-    if sigma_m is None or sigma_m <= config.position_sigma_m:
+    if sigma_m is None or sigma_m <= least_m:
         return config, ()
     lasting_m = config.lasting_sigma_m
     if not lasting_m:

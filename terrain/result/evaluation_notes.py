@@ -44,6 +44,7 @@ HARMLESS = {  # kinds of events after which the estimate is still valid
     "odometry_gap",
     "pose_outage",
     "refused_poses",
+    "rounded_positions",
     "row_rates",
     "tread_spike",
 }

@@ -13,7 +13,7 @@ from odometry.checks.findings.undo import times
 from odometry.checks.poses.map_lines import drawn_to_lines
 from odometry.checks.poses.position_noise import noisy_positions
 from odometry.checks.units.unit_findings import beyond_treads
-from odometry.positions.rounding import rounding_step_m
+from odometry.positions.rounding import steps_m
 from odometry.windows.interpolated import FEWEST, MOST, interpolated, line_ends, on_lines
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
@@ -106,8 +106,7 @@ def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
 
 
 def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
-    steps = [step for column in positions.T if (step := _grid(column)) is not None]
-    step_m = max(steps) if len(steps) == 2 else rounding_step_m(stamps_s, positions)
+    step_m = steps_m(stamps_s, positions).max()
     if step_m > COARSE_M and drawn_to_lines(positions):
         yield _finding(
             "positions_on_lines",
@@ -121,21 +120,9 @@ def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
             f"positions come in steps of {step_m:.3g} m",
             "Positions are rounded: single precision (float32) of large coordinates, or too few "
             "digits in the log; or they are drawn to the cells or the lines of a map",
-            "Write positions in double precision, relative to the start",
+            "Write positions in double precision, relative to the start; `run` and `batch` take "
+            "the steps as noise",
         )
-
-
-def _grid(values: FloatArray) -> float | None:
-    """The step of which all values are multiples, apart from a constant; None without one."""
-    changes = np.abs(np.diff(values))
-    changes = changes[changes > 1e-9 * max(1.0, float(np.abs(values).max()))]
-    if len(changes) < 20:
-        return None
-    step = float(changes.min())
-    counts = changes / step
-    whole = np.abs(counts - np.round(counts)) < 0.02
-    small = changes < 10 * step
-    return step if whole[small].mean() > 0.98 and small.mean() > 0.3 else None
 
 
 def _interpolated(

@@ -9,6 +9,7 @@ from odometry.estimation.filter_event import FilterEvent
 OUTAGE_S, OUTAGE_PERIODS = 2.0, 10.0  # longer than both is an outage
 FROZEN_TRAVEL_M = 0.1  # of the wheels, or ...
 FROZEN_TURN_RAD = 0.1  # ... of the gyroscope, since a pose that is repeated to the last digit
+FROZEN_STEPS = 2.0  # of rounded positions, that the robot goes ahead
 FROZEN_S = 1.0  # for an event; a pose or two that were written twice are none
 NOTHING = math.nan, math.nan, math.nan
 
@@ -26,6 +27,8 @@ class PoseWatch(NamedTuple):
         Usual time between poses; 0 before the second.
     travel_m, turn_rad : float
         Travel of the wheels and turn of the gyroscope since it came first.
+    rounded_m : float
+        Step to which positions are rounded; 0 for none. They stay the same on a turn on the spot.
     """
 
     pose: tuple[float, ...] | None = None
@@ -35,12 +38,20 @@ class PoseWatch(NamedTuple):
     period_s: float = 0.0
     travel_m: float = 0.0
     turn_rad: float = 0.0
+    rounded_m: float = 0.0
 
 
-def moved(speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> tuple[float, float]:
-    """Travel of the wheels [m] and turn [rad] over a step; what is not known counts as none."""
+def moved(
+    watch: PoseWatch, speeds_m_s: FloatArray, yaw_rate: float, step_s: float
+) -> tuple[float, float]:
+    """Travel [m] and turn [rad] over a step that show in poses; what is not known counts as none.
+
+    Travel of the wheels; of rounded positions the way ahead alone.
+    """
     left, right = speeds_m_s.tolist()
     travel_m, turn_rad = (abs(left) + abs(right)) / 2 * step_s, yaw_rate * step_s
+    if watch.rounded_m:
+        travel_m, turn_rad = abs(left + right) / 2 * step_s, 0.0
     return (
         0.0 if math.isnan(travel_m) else travel_m,
         0.0 if math.isnan(turn_rad) else turn_rad,
@@ -48,7 +59,7 @@ def moved(speeds_m_s: FloatArray, yaw_rate: float, step_s: float) -> tuple[float
 
 
 def watched(
-    watch: PoseWatch, pose: FloatArray | None, stamp_s: float, travel_m: float, turn_rad: float
+    watch: PoseWatch, pose: FloatArray | None, stamp_s: float, moved_by: tuple[float, float]
 ) -> tuple[PoseWatch, FloatArray | None, tuple[FilterEvent, ...]]:
     """The watch after a step, the pose (3,) to use at its end, and events that ended there.
 
@@ -59,31 +70,36 @@ def watched(
         Measured at the end.
     stamp_s : float
         Of the end.
-    travel_m, turn_rad : float
-        Of the wheels and of the gyroscope over the step.
+    moved_by : (m, rad)
+        Of `moved`, over the step.
     """
-    last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad = watch
-    gone_m, turned_rad = gone_m + travel_m, turned_rad + turn_rad
+    last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad, rounded_m = watch
+    gone_m, turned_rad = gone_m + moved_by[0], turned_rad + moved_by[1]
     cells = NOTHING if pose is None else tuple(pose.tolist())
     x, y, yaw = cells
     if math.isnan(x) and math.isnan(y) and math.isnan(yaw):
-        after = PoseWatch(last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
+        after = PoseWatch(last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad, rounded_m)
         return after, None, ()
     if last is None:
-        return PoseWatch(cells, stamp_s, stamp_s, stamp_s), pose, ()
+        after = PoseWatch(cells, stamp_s, stamp_s, stamp_s, rounded_m=rounded_m)
+        return after, pose, ()
     if _are_same(cells, last):
-        frozen = gone_m > FROZEN_TRAVEL_M or abs(turned_rad) > FROZEN_TURN_RAD
+        least_m = max(FROZEN_TRAVEL_M, FROZEN_STEPS * rounded_m)
+        frozen = gone_m > least_m or abs(turned_rad) > FROZEN_TURN_RAD
         fresh_s = fresh_s if frozen else stamp_s
-        after = PoseWatch(cells, changed_s, stamp_s, fresh_s, period_s, gone_m, turned_rad)
+        after = watch._replace(
+            pose=cells, seen_s=stamp_s, fresh_s=fresh_s, travel_m=gone_m, turn_rad=turned_rad
+        )
         return after, None if frozen else pose, ()
     away_s = stamp_s - seen_s
     events: tuple[FilterEvent, ...] = ()
     if away_s > OUTAGE_S or seen_s > fresh_s:
-        ended = PoseWatch(last, changed_s, seen_s, fresh_s, period_s, gone_m, turned_rad)
+        ended = watch._replace(travel_m=gone_m, turn_rad=turned_rad)
         events = ongoing(ended, stamp_s)
     if away_s <= max(OUTAGE_S, OUTAGE_PERIODS * period_s) or period_s == 0:
         period_s = away_s if period_s == 0 else 0.9 * period_s + 0.1 * away_s
-    return PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s), pose, events
+    after = PoseWatch(cells, stamp_s, stamp_s, stamp_s, period_s, rounded_m=rounded_m)
+    return after, pose, events
 
 
 def ongoing(watch: PoseWatch, stamp_s: float) -> tuple[FilterEvent, ...]:

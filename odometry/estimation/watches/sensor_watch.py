@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from odometry.arrays import FloatArray
+from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent, gap_event
 from odometry.estimation.measurement import Gaussian
 from odometry.estimation.watches import (
@@ -125,11 +126,12 @@ class Sensed(NamedTuple):
     terrain: str
 
 
-def begun(frame: Frame, belief: Gaussian) -> SensorWatch:
-    """At the first frame."""
-    poses = PoseWatch()
-    if frame.pose is not None:
-        poses = pose_watch.watched(poses, frame.pose, frame.stamp_s, 0.0, 0.0)[0]
+def begun(frame: Frame, belief: Gaussian, config: IcrEkfConfig) -> SensorWatch | None:
+    """At the first frame; None where sensors are not watched."""
+    if not config.watch_sensors:
+        return None
+    poses = PoseWatch(rounded_m=config.position_step_m)
+    poses = pose_watch.watched(poses, frame.pose, frame.stamp_s, (0.0, 0.0))[0]
     return SensorWatch(tread_watch.begun(frame, belief), GyroscopeWatch(), poses)
 
 
@@ -183,10 +185,8 @@ def sensed(
         )
         if watch.hold is not None:
             events += gyroscope_hold.ended(watch.hold, begin_s)
-    travel_m, turn_rad = pose_watch.moved(speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
-    poses, pose, of_poses = pose_watch.watched(
-        watch.poses, frame.pose, frame.stamp_s, travel_m, turn_rad
-    )
+    moved_by = pose_watch.moved(watch.poses, speeds_m_s, yaw_rate, frame.stamp_s - begin_s)
+    poses, pose, of_poses = pose_watch.watched(watch.poses, frame.pose, frame.stamp_s, moved_by)
     events += of_poses
     gap_since_s, of_gap = _gap(watch.gap_since_s, frame, begin_s)
     after = SensorWatch(watch.treads, gyroscope, poses, gap_since_s, hold, *watch[5:])

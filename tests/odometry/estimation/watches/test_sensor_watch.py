@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.estimation.watches.pose_watch import moved
+from odometry.estimation.watches.pose_watch import PoseWatch, moved
 from odometry.estimation.watches.tread_watch import parted
 
 
@@ -27,4 +27,9 @@ def test_the_pose_says_nothing_of_the_rest_and_the_rest_nothing_of_the_pose(rng)
     ],
 )
 def test_wheel_travel_of_a_step_is_the_mean_of_both_treads(speeds, yaw_rate, expected):
-    assert moved(np.array(speeds), yaw_rate, 0.1) == pytest.approx(expected)
+    assert moved(PoseWatch(), np.array(speeds), yaw_rate, 0.1) == pytest.approx(expected)
+
+
+def test_rounded_positions_show_the_way_ahead_alone():
+    watch = PoseWatch(rounded_m=0.5)
+    assert moved(watch, np.array([-1.0, 3.0]), 0.5, 0.1) == pytest.approx((0.1, 0.0))
