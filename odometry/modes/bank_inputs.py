@@ -170,7 +170,7 @@ def accelerations_m_s2(stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> Fl
 def forward_speed_m_s(run: Run) -> FloatArray | None:
     """Measured forward speed (N,) at the stamps of odometry.csv: vx, else from the poses.
 
-    None where neither was measured.
+    None where neither was measured: positions without yaw say nothing of what is ahead.
     """
     stamps_s = run.odometry.stamps_s
     if run.velocity is not None and np.isfinite(run.velocity["vx"]).any():
@@ -180,6 +180,8 @@ def forward_speed_m_s(run: Run) -> FloatArray | None:
         return None
     poses = run.pose.stack("x", "y", "yaw")
     known = np.isfinite(poses).all(axis=1)
+    if not known.any():
+        return None
     pose_s, poses = run.pose.stamps_s[known], poses[known]
     poses[:, 2] = continuous_yaw(run)[known]
     before, here, after = (

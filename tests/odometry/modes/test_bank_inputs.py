@@ -100,6 +100,12 @@ def test_forward_speed_is_the_measured_one_where_there_is_one(run):
     assert forward_speed_m_s(run) is None
 
 
+def test_positions_without_yaw_give_no_forward_speed(run):
+    t = run.odometry.stamps_s
+    pose = table(t=t, x=t, y=0 * t, yaw=np.full(len(t), np.nan))
+    assert forward_speed_m_s(replace(run, pose=pose)) is None
+
+
 def driving(stamps_s):
     """A run that turns, and of which nothing but the treads was recorded."""
     ones = np.ones(len(stamps_s))
