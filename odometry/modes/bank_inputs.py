@@ -24,6 +24,7 @@ STANDING_M_S = 0.01  # of a tread, or less
 BEFORE_S = 0.2  # over which treads speed up
 BIAS_SIGMA_RAD_S = 0.005  # of a gyroscope that was set to zero at rest: 0.3 degrees a second
 BIAS_WALK_RAD2_S3 = 1e-8  # variance that a second adds to it
+NO_YAW = "no pose with yaw within the time of odometry.csv; traction modes need x, y and yaw"
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ def pose_signals(run: Run) -> Signals:
     Raises
     ------
     RunFolderError
-        If the run has no poses within the time of its odometry.
+        If the run has no poses with yaw within the time of its odometry.
     """
     odometry_s = run.odometry.stamps_s
     if run.pose is None:
@@ -132,8 +133,10 @@ def pose_signals(run: Run) -> Signals:
     pose_s = run.pose.stamps_s
     inside = (pose_s >= odometry_s[0]) & (pose_s <= odometry_s[-1])
     poses = run.pose.stack("x", "y", "yaw")[inside]
-    if not np.isfinite(poses).all(axis=1).any():
+    if not len(poses):
         raise RunFolderError(f"{run.folder}: no pose lies within the time of odometry.csv")
+    if not np.isfinite(poses).all(axis=1).any():
+        raise RunFolderError(f"{run.folder}: {NO_YAW}")
     stamps_s = np.union1d(odometry_s, pose_s[inside])
     rows = np.searchsorted(odometry_s, stamps_s, side="right") - 1
     measured = np.full((len(stamps_s), 4), np.nan)
@@ -170,7 +173,7 @@ def accelerations_m_s2(stamps_s: FloatArray, tread_speeds_m_s: FloatArray) -> Fl
 def forward_speed_m_s(run: Run) -> FloatArray | None:
     """Measured forward speed (N,) at the stamps of odometry.csv: vx, else from the poses.
 
-    None where neither was measured: positions without yaw say nothing of what is ahead.
+    None where neither was measured; positions without yaw do not say what is forward.
     """
     stamps_s = run.odometry.stamps_s
     if run.velocity is not None and np.isfinite(run.velocity["vx"]).any():

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from odometry.errors import IdentificationError, WindowError
-from odometry.modes.bank_inputs import STANDING_M_S
+from odometry.modes.bank_inputs import NO_YAW, STANDING_M_S
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
 from odometry.run import UNKNOWN, Run
@@ -39,6 +39,8 @@ def _windows(
 ) -> dict[str, list[DenseWindows]]:
     scenes: dict[str, list[DenseWindows]] = {}
     for run in runs:
+        if run.pose is not None and not np.isfinite(run.pose["yaw"]).any():
+            raise IdentificationError(f"{run.folder}: {NO_YAW}")
         scene = _fewer_poses(dense_windows_of(run, horizon_s))
         for name in map(str, np.unique(row_terrains(run))):
             if name == UNKNOWN:

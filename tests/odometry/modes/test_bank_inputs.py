@@ -84,6 +84,14 @@ def test_a_run_without_poses_in_its_time_is_reported(run):
         pose_signals(replace(run, pose=table(t=[5.0], x=[0.0], y=[0.0], yaw=[0.0])))
 
 
+def test_positions_without_yaw_do_not_say_what_is_forward(run):
+    t = np.arange(0.0, 0.5, 0.05)
+    pose = table(t=t, x=t, y=t, yaw=np.full(len(t), NAN))
+    assert forward_speed_m_s(replace(run, pose=pose)) is None
+    with pytest.raises(RunFolderError, match="one: no pose with yaw"):
+        pose_signals(replace(run, pose=pose))
+
+
 def test_forward_speed_of_an_arc_is_its_chord(run):
     """Poses on a circle of radius 2 at 0.6 rad/s, backwards: -1.2 m/s but for the chord."""
     t = np.arange(0.0, 0.5, 0.05)
@@ -98,12 +106,6 @@ def test_forward_speed_is_the_measured_one_where_there_is_one(run):
     velocity = table(t=[0.0, 0.2, 0.4], vx=[1.0, NAN, 3.0])
     assert forward_speed_m_s(replace(run, velocity=velocity)) == pytest.approx([1, 1.5, 2, 2.5, 3])
     assert forward_speed_m_s(run) is None
-
-
-def test_positions_without_yaw_give_no_forward_speed(run):
-    t = run.odometry.stamps_s
-    pose = table(t=t, x=t, y=0 * t, yaw=np.full(len(t), np.nan))
-    assert forward_speed_m_s(replace(run, pose=pose)) is None
 
 
 def driving(stamps_s):

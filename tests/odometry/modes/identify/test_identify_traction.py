@@ -273,3 +273,10 @@ def test_turns_to_one_side_do_not_determine_all_gains():
 
 def _to_left(run):
     return {**run.odometry.columns, "v_right": run.odometry["v_right"] + 0.2}
+
+
+def test_positions_without_yaw_are_said_to_lack_it():
+    run = drive_by_eq_3(1, "none")
+    columns = run.pose.columns | {"yaw": np.full(len(run.pose), np.nan)}
+    with pytest.raises(IdentificationError, match="no pose with yaw"):
+        identify_traction_modes([replace(run, pose=replace(run.pose, columns=columns))])
