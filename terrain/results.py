@@ -174,7 +174,7 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
     dict
         `errors` by trajectory, `reference` and `horizon_m`, as `result.json` holds them, `run`,
         its name, and `run_path`, as it was given to `run`; None where the result does not say;
-        `other_odometry`, names of what the run folder kept.
+        `other_odometry`, names of what the run folder kept; `remarks`, sentences beside the errors.
 
     Raises
     ------
@@ -208,7 +208,13 @@ def read_errors(folder: str | Path) -> dict[str, Any]:
         errors = {key: content[key] for key in ("errors", "reference", "horizon_m")}
         run = str(content["run"]) if "run" in content else None
         kept = [str(name) for name in content.get("other_odometry", [])]
-        return errors | {"run": run, "run_path": _run_path(content), "other_odometry": kept}
+        remarks = [str(each) for each in content.get("remarks", [])]
+        return errors | {
+            "run": run,
+            "run_path": _run_path(content),
+            "other_odometry": kept,
+            "remarks": remarks,
+        }
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ResultError(f"{file}: it is not a result of `run`") from error
 

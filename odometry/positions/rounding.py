@@ -19,7 +19,9 @@ BAND = (MOST_STEP_M / LEAST_STEP_M) ** (1 / BANDS)  # of steps that are tried to
 BIN = 1 / 16  # of the least step of a band
 FINER = 4  # frequencies than positions resolve
 MOST_BINS = 2**17  # of a transform: steps of 0.02 m are looked for on 160 m, of 0.5 m on 4 km
-FEWEST_CHANGES = 6  # that are whole multiples of the least: one in 10^7 by chance
+MANY_CHANGES = 20  # of a coordinate, that are whole multiples of the least
+FEWEST_CHANGES = 6  # the same where values are repeated: steady speeds of a simulation are not
+REPEATED = 0.5  # of the rows
 AROUND_S = 1.0  # to each side of a position, of its neighbours
 LEAST_MOVED = 2.0  # steps that the neighbours of a position must span
 LEAST_POSES = 40  # of which these are
@@ -51,23 +53,29 @@ def rounding_step_m(stamps_s: FloatArray, positions: FloatArray) -> float:
 def steps_m(stamps_s: FloatArray, positions: FloatArray) -> FloatArray:
     """Steps (2,) of x and y of which all positions (M, 2) are multiples; else of `rounding_step_m`.
 
-    A coordinate that hardly changes has the step of the other one. Zeros where there are none.
+    Where values are repeated in most rows, a coordinate that hardly changes has the step of the
+    other one. Zeros where there are none.
     """
-    exact = [_multiples_of(column) for column in positions.T]
+    changes = np.abs(np.diff(positions, axis=0))
+    least = 1e-9 * np.maximum(1.0, np.abs(positions).max(axis=0))
+    repeated = (changes <= least).mean(axis=0) >= REPEATED
+    exact = [
+        _multiples_of(column[column > above], FEWEST_CHANGES if often else MANY_CHANGES)
+        for column, above, often in zip(changes.T, least, repeated, strict=True)
+    ]
     known = [step for step in exact if step is not None]
-    if known and min(known) > 0:
+    if known and min(known) > 0 and (len(known) == 2 or repeated.all()):
         return np.array([max(known) if step is None else step for step in exact])
-    return np.full(2, rounding_step_m(stamps_s, positions))
+    new = np.append(True, changes.any(axis=1))
+    return np.full(2, rounding_step_m(stamps_s[new], positions[new]))
 
 
-def _multiples_of(values: FloatArray) -> float | None:
-    """The step of which all values (M,) are multiples, apart from a constant.
+def _multiples_of(changes: FloatArray, fewest: int) -> float | None:
+    """The step of which changes (K,) of a coordinate are multiples.
 
-    0 without one; None where fewer than FEWEST_CHANGES changes show none.
+    0 without one; None where there are fewer changes.
     """
-    changes = np.abs(np.diff(values))
-    changes = changes[changes > 1e-9 * max(1.0, float(np.abs(values).max()))]
-    if len(changes) < FEWEST_CHANGES:
+    if len(changes) < fewest:
         return None
     step = float(changes.min())
     counts = changes / step

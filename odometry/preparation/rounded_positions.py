@@ -23,11 +23,11 @@ def with_rounding(
     stays off, which no averaging lessens, and the sigmas of an estimate hold that. Unchanged where
     it is less than `position_sigma_m`.
     """
-    changed = np.append(True, (np.diff(positions, axis=0) != 0).any(axis=1))
-    steps = steps_m(stamps_s[changed], positions[changed])
+    steps = steps_m(stamps_s, positions)
     off_m = steps / math.sqrt(12)
     sigma_m = float(np.max(off_m * np.sqrt([_in_a_row(column) for column in positions.T])))
-    if sigma_m <= config.position_sigma_m or drawn_to_lines(positions[changed]):
+    new = np.append(True, (np.diff(positions, axis=0) != 0).any(axis=1))
+    if sigma_m <= config.position_sigma_m or drawn_to_lines(positions[new]):
         return config, ()
     step_m, lasting_m = float(steps.max()), float(off_m.max())
     event = FilterEvent(

@@ -57,6 +57,8 @@ def evaluate(
         for name, of in results.items():
             for one in of.get("edited", []):
                 click.echo(f"Warning: {one}; the errors above are those of result.json", err=True)
+            for remark in of.get("remarks", []):
+                click.echo(f"Note: {name}: {remark}", err=True)
             if lost := _not_found(of):
                 click.echo(f"Note: {name}: {lost}", err=True)
             for other, errors in _others(of).items():

@@ -38,7 +38,7 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 def _beside_errors(result: "RunResult") -> list[str]:
     """What the table does not hold: how the estimate is evaluated, and what else to note."""
-    from terrain.result.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with, remarks
+    from terrain.result.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with
 
     second = result.second
     how = [] if second is None else [f"The estimate is evaluated with {evaluated_with(second)}"]
@@ -46,7 +46,7 @@ def _beside_errors(result: "RunResult") -> list[str]:
     return [
         *how,
         *missing,
-        *remarks(result.scores, result.off_at_the_end_m, result.replay.events),
+        *result.remarks,
         advice(result.uncertainty, result.reference_name),
     ]
 

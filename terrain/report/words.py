@@ -9,13 +9,12 @@ from odometry.run import UNKNOWN
 from terrain.report.lines import (
     GYROSCOPE,
     IDEAL,
-    LABELS,
     ODOMETER,
     ReportLines,
     other_odometer,
 )
 from terrain.report.tables import number
-from terrain.result.evaluation_notes import NO_GYROSCOPE, evaluated_with, remarks
+from terrain.result.evaluation_notes import NO_GYROSCOPE, evaluated_with
 from terrain.result.run_result import RunResult
 from terrain.result.switch_delay import true_stretches
 
@@ -49,8 +48,7 @@ def headline(lines: ReportLines, scores: Mapping[str, Score]) -> str:
         f"Over stretches of {horizon_m:g} m the error of the odometer is {number(own, 4)} m per m "
         f"of wheel travel against the {lines.reference_name}: {', '.join(parts)}."
     )
-    by_name = {name: scores[label] for name, label in LABELS.items() if label in scores}
-    return " ".join([compared, *remarks(by_name, result.off_at_the_end_m, result.replay.events)])
+    return " ".join([compared, *result.remarks])
 
 
 def notes(lines: ReportLines) -> list[str]:

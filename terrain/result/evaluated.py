@@ -1,6 +1,7 @@
 """Which trajectories of a replayed run are evaluated with which poses, and their errors."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.estimates import Replay
+from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.relative import (
     EvaluationConfig,
     RelativeErrors,
@@ -18,6 +20,8 @@ from odometry.evaluation.score import Score, Withheld, counted_reference_yaw, su
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
+
+SCATTERS = {"noisy_positions": 0, "rounded_positions": 2}  # kinds, and which value is sigma
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,23 @@ class EvaluatedTrajectory:
 def is_used_by_filter(reference_name: str) -> bool:
     """Whether the filter used the reference, which then cannot evaluate its estimate."""
     return reference_name == "pose"
+
+
+def scatter_of_reference(
+    events: Sequence[FilterEvent], reference_name: str, horizon_m: float
+) -> list[str]:
+    """A sentence where the positions of pose.csv scatter: that much of an error is theirs.
+
+    Over a horizon both ends do, with sigma along each axis: sqrt(pi) sigma in the mean.
+    """
+    sigmas_m = [event.values[SCATTERS[event.kind]] for event in events if event.kind in SCATTERS]
+    if not is_used_by_filter(reference_name) or not sigmas_m:
+        return []
+    per_m = math.sqrt(math.pi) * max(sigmas_m) / horizon_m
+    return [
+        f"The poses themselves scatter by {max(sigmas_m):.2g} m: a perfect trajectory would have "
+        f"an error of about {per_m:.2g} m per m against them."
+    ]
 
 
 def at_reference_point(

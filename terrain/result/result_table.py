@@ -15,7 +15,7 @@ from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
 from odometry.run import UNKNOWN
 from terrain.result.evaluated import is_used_by_filter
-from terrain.result.evaluation_notes import advice, filter_table, remarks, verdict
+from terrain.result.evaluation_notes import advice, filter_table, verdict
 from terrain.result.label_confusion import label_confusion_table
 from terrain.result.new_terrain import contradiction_lines
 from terrain.result.run_notes import run_notes
@@ -95,7 +95,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "errors": error_tables(result),
         "off_at_the_end_m": result.off_at_the_end_m,
         "estimate_has_seen_reference": is_used_by_filter(result.reference_name),
-        "remarks": remarks(result.scores, result.off_at_the_end_m, result.replay.events),
+        "remarks": result.remarks,
         "notes": run_notes(result),
         "withheld": _withheld(result),
         "odometer_uncertainty": uncertainty_table(result.uncertainty, result.reference_name),

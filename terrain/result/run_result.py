@@ -21,7 +21,9 @@ from terrain.result.evaluated import (
     SecondReplay,
     at_reference_point,
     is_used_by_filter,
+    scatter_of_reference,
 )
+from terrain.result.evaluation_notes import remarks
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.switch import SwitchEvent
 
@@ -156,6 +158,15 @@ class RunResult:
             delivered = self.beside_reference(self.replay.trajectory).trajectory
             distances["estimate"] = position_errors(delivered, self.reference)[1]
         return {name: float(found[-1]) for name, found in distances.items() if len(found)}
+
+    @property
+    def remarks(self) -> list[str]:
+        """Sentences that belong beside the errors."""
+        events, horizon_m = self.replay.events, self.config.evaluation.horizon_m
+        return [
+            *scatter_of_reference(events, self.reference_name, horizon_m),
+            *remarks(self.scores, self.off_at_the_end_m, events),
+        ]
 
     @property
     def changes(self) -> tuple[SwitchEvent | TerrainChange, ...]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import headings
 from odometry.checks.findings.finding import Finding, Level
@@ -37,7 +37,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     positions, stamps_s = pose.stack("x", "y")[rows], pose.stamps_s[rows]
     yield from _frame(evidence, positions)
     new = np.concatenate([[True], (np.diff(positions, axis=0) != 0).any(axis=1)])
-    yield from _coarse(stamps_s[new], positions[new])
+    yield from _coarse(stamps_s, positions, new)
     yield from _interpolated(evidence, stamps_s, positions)
     yield from noisy_positions(evidence, stamps_s[new], positions[new])
     if evidence.yaw_measured:
@@ -105,9 +105,9 @@ def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
     )
 
 
-def _coarse(stamps_s: FloatArray, positions: FloatArray) -> Iterator[Finding]:
+def _coarse(stamps_s: FloatArray, positions: FloatArray, new: BoolArray) -> Iterator[Finding]:
     step_m = steps_m(stamps_s, positions).max()
-    if step_m > COARSE_M and drawn_to_lines(positions):
+    if step_m > COARSE_M and drawn_to_lines(positions[new]):
         yield _finding(
             "positions_on_lines",
             "nearly each position has an x or a y of few values, and the other one is free",

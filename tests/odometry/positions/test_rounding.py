@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.positions.rounding import rounding_step_m
+from odometry.positions.rounding import rounding_step_m, steps_m
 
 STAMPS_S = np.arange(0.0, 150.0, 0.1)
 LOOPS = np.column_stack([9 * np.sin(STAMPS_S / 9), 6 * np.sin(STAMPS_S / 7 + 1)])
@@ -68,3 +68,16 @@ def test_positions_far_apart_are_searched_for_coarse_steps_alone(far_m):
 
 def test_a_step_of_a_long_way_is_found():
     assert rounding_step_m(STAMPS_S, rounded(100 * LOOPS, 0.4)) == pytest.approx(0.4, rel=0.02)
+
+
+def test_few_steps_of_a_slow_robot_are_recognised_where_values_repeat():
+    stamps_s = np.arange(0.0, 60.0, 0.05)
+    path = np.column_stack([0.15 * stamps_s, 0.02 * np.sin(stamps_s)])
+    assert steps_m(stamps_s, np.round(path)).tolist() == [1.0, 1.0]
+    assert steps_m(stamps_s, path).tolist() == [0.0, 0.0]
+
+
+def test_steady_speeds_of_a_simulation_are_no_steps():
+    stamps_s = np.arange(0.0, 20.0, 0.05)
+    path = np.column_stack([stamps_s, np.zeros(len(stamps_s))])
+    assert steps_m(stamps_s, path).tolist() == [0.0, 0.0]

@@ -123,9 +123,16 @@ def test_json_gives_the_numbers_and_the_failures(tmp_path, results):
         "run": None,
         "run_path": None,
         "other_odometry": [],
+        "remarks": [],
     }
     assert set(content[absent]) == {"error"}
 
 
 def test_no_folder_is_a_usage_error():
     assert CliRunner().invoke(evaluate, []).exit_code == 2
+
+
+def test_what_the_run_remarked_beside_its_errors_is_said(results):
+    folder = results("one", finished(0.3) | {"remarks": ["The poses themselves scatter by 0.8 m."]})
+    answer = CliRunner().invoke(evaluate, [folder])
+    assert f"Note: {folder}: The poses themselves scatter by 0.8 m." in answer.stderr

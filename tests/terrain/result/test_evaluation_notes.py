@@ -1,9 +1,11 @@
 """Sentences about where the simple does as well or better, from scores made by hand."""
 
+import numpy as np
 import pytest
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
+from terrain.result.evaluated import scatter_of_reference
 from terrain.result.evaluation_notes import remarks, simple_is_better, worse_at_the_end
 
 
@@ -62,3 +64,17 @@ def test_poses_and_odometry_that_contradict_each_other_are_said(times, said):
     sentences = remarks(scores(odometer=0.04, differential_drive=0.3), {}, again)
     assert len(sentences) == said
     assert all(f"started again {times} times" in sentence for sentence in sentences)
+
+
+def test_what_of_the_errors_is_the_scatter_of_the_poses_is_said(rng):
+    """Two ends of a window, of a trajectory without an error."""
+    ends = rng.normal(scale=0.8, size=(2, 4000, 2))
+    per_m = np.hypot(*(ends[1] - ends[0]).T).mean() / 5.0
+    scatter = FilterEvent("noisy_positions", 0.0, 9.0, "they scatter", (0.8, 0.4))
+    (sentence,) = scatter_of_reference((scatter,), "pose", 5.0)
+    assert f"an error of about {per_m:.2f} m per m" in sentence
+    rounding = FilterEvent("rounded_positions", 0.0, 9.0, "they are rounded", (1.0, 0.9, 0.29))
+    (sentence,) = scatter_of_reference((rounding,), "pose", 5.0)
+    assert "scatter by 0.29 m" in sentence
+    assert scatter_of_reference((scatter,), "truth", 5.0) == []
+    assert scatter_of_reference((), "pose", 5.0) == []
