@@ -107,8 +107,8 @@ def scatter_of_reference(
         return []
     per_m = math.sqrt(math.pi) * max(sigmas_m) / horizon_m
     return [
-        f"The poses themselves scatter by {max(sigmas_m):.2g} m: a perfect trajectory would have "
-        f"an error of about {per_m:.2g} m per m against them."
+        f"The poses themselves are off by about {max(sigmas_m):.2g} m (scatter, rounding): a "
+        f"perfect trajectory would have an error of up to {per_m:.2g} m per m against them."
     ]
 
 

@@ -133,6 +133,6 @@ def test_no_folder_is_a_usage_error():
 
 
 def test_what_the_run_remarked_beside_its_errors_is_said(results):
-    folder = results("one", finished(0.3) | {"remarks": ["The poses themselves scatter by 0.8 m."]})
+    folder = results("one", finished(0.3) | {"remarks": ["The poses themselves are off."]})
     answer = CliRunner().invoke(evaluate, [folder])
-    assert f"Note: {folder}: The poses themselves scatter by 0.8 m." in answer.stderr
+    assert f"Note: {folder}: The poses themselves are off." in answer.stderr
