@@ -56,6 +56,8 @@ def steps_m(stamps_s: FloatArray, positions: FloatArray) -> FloatArray:
     Where values are repeated in most rows, a coordinate that hardly changes has the step of the
     other one. Zeros where there are none.
     """
+    if len(positions) <= FEWEST_CHANGES:
+        return np.zeros(2)
     changes = np.abs(np.diff(positions, axis=0))
     least = 1e-9 * np.maximum(1.0, np.abs(positions).max(axis=0))
     repeated = (changes <= least).mean(axis=0) >= REPEATED

@@ -77,6 +77,12 @@ def test_few_steps_of_a_slow_robot_are_recognised_where_values_repeat():
     assert steps_m(stamps_s, path).tolist() == [0.0, 0.0]
 
 
+@pytest.mark.parametrize("count", [0, 1, 6])
+def test_few_positions_show_no_steps(count):
+    positions = np.arange(2.0 * count).reshape(-1, 2)
+    assert steps_m(np.arange(float(count)), positions).tolist() == [0.0, 0.0]
+
+
 def test_steady_speeds_of_a_simulation_are_no_steps():
     stamps_s = np.arange(0.0, 20.0, 0.05)
     path = np.column_stack([stamps_s, np.zeros(len(stamps_s))])
