@@ -7,6 +7,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 FEWEST_RUNS = 3  # whose spread is taken as a sample of the spread between runs
 FEWEST_STRETCHES = 6
 STRETCH = 5  # windows: some 20 s, over which slip wanders
+FEWEST_WINDOWS = FEWEST_STRETCHES * STRETCH  # fewer show no spread of the parameters
 DETERMINED_ALONE = 1 - 1e-6  # a direction in which one group has all of the information
 
 

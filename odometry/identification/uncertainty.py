@@ -9,8 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.problem import Problem
 from odometry.identification.solve import Solution
 from odometry.identification.spread import (
-    FEWEST_STRETCHES,
-    STRETCH,
+    FEWEST_WINDOWS,
     correlated_groups,
     spread_between,
 )
@@ -135,7 +134,7 @@ def _most_freedom(windows: Windows, weights: FloatArray, left: FloatArray) -> fl
 
     The noise of many shows in all axes; so do their errors of motion, and the spread.
     """
-    if len(windows) >= FEWEST_STRETCHES * STRETCH:
+    if len(windows) >= FEWEST_WINDOWS:
         return np.inf
     return float(weights.sum() * left.min())
 

@@ -37,7 +37,7 @@ def with_rounding(
         f"positions come in steps of {step_m:.2g} m: their noise in the filter is {sigma_m:.2g} m, "
         f"in place of {config.position_sigma_m:g} m, and the sigmas of x and y hold "
         f"{lasting_m:.2g} m",
-        (step_m, sigma_m, lasting_m),
+        (lasting_m, sigma_m, step_m),
     )
     return replace(
         config,

@@ -21,7 +21,7 @@ from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
 
-SCATTERS = {"noisy_positions": 0, "rounded_positions": 2}  # kinds, and which value is sigma
+SCATTERS = ("noisy_positions", "rounded_positions")  # their first value is its deviation
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ def scatter_of_reference(
 
     Over a horizon both ends do, with sigma along each axis: sqrt(pi) sigma in the mean.
     """
-    sigmas_m = [event.values[SCATTERS[event.kind]] for event in events if event.kind in SCATTERS]
+    sigmas_m = [event.values[0] for event in events if event.kind in SCATTERS]
     if not is_used_by_filter(reference_name) or not sigmas_m:
         return []
     per_m = math.sqrt(math.pi) * max(sigmas_m) / horizon_m

@@ -11,18 +11,14 @@ of one axis (1: as large as claimed).
 """
 
 import argparse
-import tempfile
 import warnings
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Run
 from odometry.table import Table
 from terrain.main_job import run_odometry
-from tests.blind.any_robot import write_clean_run
-from tests.studies.estimation_steps import PARAMETERS
+from tests.studies.estimation_steps import clean_drive, farthest_and_width
 
 SELDOM = ("gnss", "slow slam")  # true places too seldom to draw lines between them
 SHARES = (0.0, 0.5, 1.0, 2.0)  # of the white noise: the errors that last
@@ -49,9 +45,7 @@ def with_receiver(run, truth, rng):
 def figures(run, truth, robot):
     """Farthest parameter, width, shares beyond three deviations (place, yaw), place in sigmas."""
     replay = run_odometry(run, vision=False).replay
-    mean, sigma = replay.means[-1], replay.sigmas[-1]
-    off = max(abs(mean[at] - robot.truth[name]) / sigma[at] for name, at in PARAMETERS.items())
-    width = (mean[3] - mean[4]) / (robot.truth["y_left"] - robot.truth["y_right"])
+    off, width = farthest_and_width(replay, robot.truth)
     later = slice(len(replay.stamps_s) // 2, None)
     true = [np.interp(replay.stamps_s, truth["t"], truth[name]) for name in ("x", "y")]
     true.append(np.interp(replay.stamps_s, truth["t"], np.unwrap(truth["yaw"])))
@@ -71,10 +65,7 @@ def main():
     warnings.simplefilter("ignore")
     rows = []
     for seed in range(options.first_seed, options.first_seed + options.seeds):
-        with tempfile.TemporaryDirectory() as place:
-            robot = write_clean_run(Path(place) / "run", seed)
-            run = Run.read(Path(place) / "run")
-            truth = np.genfromtxt(Path(place) / "run" / "truth.csv", delimiter=",", names=True)
+        robot, run, truth = clean_drive(seed)
         if len(truth) > 20000 or robot.source in SELDOM:
             continue
         received, share = with_receiver(run, truth, np.random.default_rng([seed, 3]))
@@ -84,6 +75,8 @@ def main():
     for gyroscope in (True, False):
         for shares in (SHARES[:1], SHARES[1:]):
             chosen = table[(table[:, 0] == gyroscope) & np.isin(table[:, 1], shares)]
+            if not len(chosen):
+                continue
             off, width, place, yaw, sigmas, error_m = chosen[:, 2:].T
             print(f"gyroscope {gyroscope}, lasting {shares}: {len(chosen)} drives; a parameter "
                   f"beyond 3 deviations {np.sum(off > 3)}, beyond 5 {np.sum(off > 5)}; width below "

@@ -24,6 +24,15 @@ SHARES = (0.0, 0.02, 0.05, 0.1)
 PARAMETERS = {"y_left": 3, "y_right": 4, "x_icr": 5, "alpha_left": 7, "alpha_right": 8}
 
 
+def clean_drive(seed):
+    """Robot, run and truth."""
+    with tempfile.TemporaryDirectory() as place:
+        robot = write_clean_run(Path(place) / "run", seed)
+        run = Run.read(Path(place) / "run")
+        truth = np.genfromtxt(Path(place) / "run" / "truth.csv", delimiter=",", names=True)
+    return robot, run, truth
+
+
 def in_steps(run, step_m_s):
     if not step_m_s:
         return run
@@ -33,8 +42,7 @@ def in_steps(run, step_m_s):
     return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
-def farthest_and_width(run, truth):
-    replay = run_odometry(run, vision=False).replay
+def farthest_and_width(replay, truth):
     mean, sigma = replay.means[-1], replay.sigmas[-1]
     off = max(abs(mean[at] - truth[name]) / sigma[at] for name, at in PARAMETERS.items())
     return off, (mean[3] - mean[4]) / (truth["y_left"] - truth["y_right"])
@@ -48,15 +56,13 @@ def main():
     warnings.simplefilter("ignore")
     found = {share: [] for share in SHARES}
     for seed in range(options.first_seed, options.first_seed + options.seeds):
-        with tempfile.TemporaryDirectory() as place:
-            robot = write_clean_run(Path(place) / "run", seed)
-            run = Run.read(Path(place) / "run")
+        robot, run, _ = clean_drive(seed)
         if run.yaw_rate is None or np.isnan(run.pose["yaw"]).any() or len(run.pose) > 20000:
             continue
         for share in SHARES:
-            found[share].append(
-                farthest_and_width(in_steps(run, share * robot.fastest_m_s), robot.truth)
-            )
+            coarse = in_steps(run, share * robot.fastest_m_s)
+            replay = run_odometry(coarse, vision=False).replay
+            found[share].append(farthest_and_width(replay, robot.truth))
         last = [found[share][-1] for share in SHARES]
         print(seed, robot.way, *(f"{off:.1f}, {width:.2f};" for off, width in last), flush=True)
     for share, rows in found.items():

@@ -43,7 +43,7 @@ def figures(run, config=None):
 @pytest.mark.parametrize("change", [rounded, single])
 def test_steps_are_noise_that_values_in_a_row_share(lively, change):
     config, (event,) = figures(with_positions(lively, change))
-    step_m, together_m, lasting_m = event.values
+    lasting_m, together_m, step_m = event.values
     assert step_m == config.position_step_m == pytest.approx(STEP_M)
     assert lasting_m == config.lasting_sigma_m == pytest.approx(STEP_M / np.sqrt(12))
     # at 10 Hz and half a metre a second the robot is in a step for ten poses and more

@@ -73,7 +73,7 @@ def test_what_of_the_errors_is_the_scatter_of_the_poses_is_said(rng):
     scatter = FilterEvent("noisy_positions", 0.0, 9.0, "they scatter", (0.8, 0.4))
     (sentence,) = scatter_of_reference((scatter,), "pose", 5.0)
     assert f"an error of up to {per_m:.2f} m per m" in sentence
-    rounding = FilterEvent("rounded_positions", 0.0, 9.0, "they are rounded", (1.0, 0.9, 0.29))
+    rounding = FilterEvent("rounded_positions", 0.0, 9.0, "they are rounded", (0.29, 0.9, 1.0))
     (sentence,) = scatter_of_reference((rounding,), "pose", 5.0)
     assert "off by about 0.29 m" in sentence
     assert scatter_of_reference((scatter,), "truth", 5.0) == []
