@@ -95,8 +95,12 @@ def _regions(
     run: Run, stamps_s: FloatArray, camera: Camera | None, reason: str
 ) -> list[Region | NoRegion]:
     twists, speeds_m_s = motion_at(run, stamps_s)
+    if camera is None:
+        return [NoRegion(reason)] * len(stamps_s)
+    whole = isinstance(straight_ahead(camera, run.robot), Region)
+    config = WHOLE if whole else RegionConfig()
     return [
-        whole_region(camera, run.robot, twist, speed) if camera is not None else NoRegion(reason)
+        shown_region(camera, run.robot, twist, speed, config)
         for twist, speed in zip(twists, speeds_m_s, strict=True)
     ]
 
@@ -167,23 +171,27 @@ def run_regions(run: Run, camera: Camera) -> RunRegions:
     """Predict the region at moments of a run, by an ordinary effective width."""
     twists, speeds_m_s = motion_at(run, image_rows(run))
     regions = [
-        whole_region(camera, run.robot, twist, speed_m_s)
+        shown_region(camera, run.robot, twist, speed_m_s)
         for twist, speed_m_s in zip(twists, speeds_m_s, strict=True)
     ]
     unseen = Counter(region.reason for region in regions if isinstance(region, NoRegion))
     return RunRegions(len(regions), unseen, straight_ahead(camera, run.robot))
 
 
-def straight_ahead(camera: Camera, robot: Robot) -> Region | NoRegion:
+def straight_ahead(camera: Camera, robot: Robot, config: RegionConfig = WHOLE) -> Region | NoRegion:
     """The region of a robot that drives straight on."""
-    return whole_region(camera, robot, np.array([1.0, 0.0, 0.0]), 1.0)
+    return shown_region(camera, robot, np.array([1.0, 0.0, 0.0]), 1.0, config)
 
 
-def whole_region(
-    camera: Camera, robot: Robot, twist: FloatArray, speed_m_s: float
+def shown_region(
+    camera: Camera,
+    robot: Robot,
+    twist: FloatArray,
+    speed_m_s: float,
+    config: RegionConfig = WHOLE,
 ) -> Region | NoRegion:
-    """The region by a twist (3,) if the image shows all of it, large enough."""
-    region = predict_region(robot, camera, twist, speed_m_s, WHOLE)
+    """The region by a twist (3,) if the image shows enough of it, usually all, large enough."""
+    region = predict_region(robot, camera, twist, speed_m_s, config)
     if isinstance(region, NoRegion):
         return NoRegion(OUTSIDE)
     pixels = camera.ground_to_pixels(region.rectangle.corners)

@@ -19,6 +19,7 @@ from terrain.checks.other_cameras import (
     too_far,
 )
 from terrain.errors import CameraError
+from terrain.region.footprint_parts import footprint_parts, visible_shares
 from terrain.region.region import NoRegion, Region, RegionConfig
 from terrain.region.warp import scale_mismatch
 
@@ -43,6 +44,10 @@ def region_ahead(run: Run, table: Mapping[str, Any]) -> Iterator[Finding]:
         return
     if not (impossible or isinstance(found.ahead, NoRegion) or tilted(_mount(table))):
         yield _where_it_goes(seen, found.ahead)
+        return
+    share = _share_ahead(camera, run.robot)
+    if share > 0 and not (impossible or tilted(_mount(table)) or _all_shown(run.robot, table)):
+        yield _in_part(share, _seen(camera, table))
         return
     fitting = _fitting(run.robot, table)
     yield Finding(
@@ -75,21 +80,38 @@ def _mount(table: Mapping[str, Any]) -> FloatArray:
     return np.array(table.get("mount", np.zeros(6)), dtype=np.float64)
 
 
+def _all_shown(robot: Robot, table: Mapping[str, Any]) -> bool:
+    """Whether the image shows all of the region by another reading."""
+    return any(
+        isinstance(straight_ahead(camera, reading.robot), Region)
+        for reading, camera in _cameras(robot, table)
+    )
+
+
 def _fitting(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
     """Readings by which the image shows the region of a robot that drives straight on.
 
-    Those that put the camera near the terrain or very high come last.
+    Those that put the camera near the terrain or very high come last, before them those by which
+    only a part is shown.
     """
-    found: list[tuple[bool, Reading]] = []
+    found: list[tuple[bool, bool, Reading]] = []
+    for reading, camera in _cameras(robot, table):
+        in_part = isinstance(straight_ahead(camera, reading.robot), NoRegion)
+        if not in_part or _share_ahead(camera, reading.robot) > 0:
+            usual = USUAL_HEIGHT_M[0] <= camera.height_m <= USUAL_HEIGHT_M[1]
+            found.append((not usual, in_part, reading))
+    return [reading for *_, reading in sorted(found, key=lambda each: each[:2])]
+
+
+def _cameras(robot: Robot, table: Mapping[str, Any]) -> Iterator[tuple[Reading, Camera]]:
+    """Other readings, none of which looks up."""
     for reading in _readings(robot, table):
         try:
             camera = Camera.from_table(reading.table)
         except CameraError:
             continue
-        if isinstance(straight_ahead(camera, reading.robot), Region):
-            usual = USUAL_HEIGHT_M[0] <= camera.height_m <= USUAL_HEIGHT_M[1]
-            found.append((not usual, reading))
-    return [reading for _, reading in sorted(found, key=lambda pair: pair[0])]
+        if not looks_up(_mount(reading.table)):
+            yield reading, camera
 
 
 def _readings(robot: Robot, table: Mapping[str, Any]) -> list[Reading]:
@@ -117,6 +139,30 @@ def _where_it_goes(seen: str, ahead: Region) -> Finding:
         "on",
         "The robot turns or reverses most of the time, where the camera does not point",
         "Nothing to do: images get labels where the robot drives ahead",
+    )
+
+
+def _share_ahead(camera: Camera, robot: Robot) -> float:
+    """Most of the region that the image shows at once when driving straight on.
+
+    0 where that is too little, or under the robot: no camera sees through it.
+    """
+    region = straight_ahead(camera, robot, RegionConfig())
+    if isinstance(region, NoRegion) or region.place[0] < (robot.length or robot.track_width) / 2:
+        return 0.0
+    parts = footprint_parts(robot, RegionConfig().footprint_scale, per_tread=False)
+    return float(visible_shares(camera, region.pose_ahead[None], parts)[0])
+
+
+def _in_part(share: float, seen: str) -> Finding:
+    return Finding(
+        "region_in_part",
+        Level.NOTE,
+        f"the image shows {100 * share:.0f} % of the region ahead at once when driving straight "
+        f"on; {seen}",
+        "The robot with its margin is wider or longer than what the camera shows of the terrain",
+        "Nothing to do if check --picture shows the terrain where it is: what is shown of the "
+        "region gets labels; a higher camera, a wider lens or less pitch shows more",
     )
 
 

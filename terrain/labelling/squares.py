@@ -61,6 +61,7 @@ def places_of(middles_m: FloatArray, centres_m: FloatArray, radius_m: float) -> 
 
 
 ASIDE = 0.8  # of what a footprint is wider than a square: so far the outer squares lie apart
+STARTS = (0.0, 0.5, 0.25, 0.75)  # sides ahead of the robot; a narrow view shows few of a row
 GRID = 5  # points along each side of a square; all of them are shown and driven over
 
 
@@ -169,9 +170,19 @@ class SquareFinder:
         return first, int(np.searchsorted(stamps_s, square.passing.begin_s, side="right"))
 
     def _of_image(self, row: int, side_m: float, coarsest_m: float) -> list[DrivenSquare]:
+        """Those of the first start that has some."""
+        for start in STARTS:
+            squares = self._from_start(row, side_m, coarsest_m, start * side_m)
+            if squares:
+                return squares
+        return []
+
+    def _from_start(
+        self, row: int, side_m: float, coarsest_m: float, start_m: float
+    ) -> list[DrivenSquare]:
         stamp_s = float(self.images.stamps_s[row])
         pose, estimated = self.poses[row], self.estimated_poses[row]
-        middles = self._middles_ahead(stamp_s, pose, side_m)
+        middles = self._middles_ahead(stamp_s, pose, side_m, start_m)
         grid = np.linspace(-side_m / 2, side_m / 2, GRID)
         points = np.stack(np.meshgrid(grid, grid), axis=-1).reshape(-1, 2)
         points = middles[:, None] + points
@@ -193,13 +204,15 @@ class SquareFinder:
             if passing is not None and not self._in_gap(stamp_s, passing.end_s)
         ]
 
-    def _middles_ahead(self, stamp_s: float, pose: FloatArray, side_m: float) -> FloatArray:
+    def _middles_ahead(
+        self, stamp_s: float, pose: FloatArray, side_m: float, start_m: float
+    ) -> FloatArray:
         """Middles (n, 2) along the way ahead, a side apart, in the robot frame at the image."""
         rows = self.way.ahead(stamp_s, self.reach_m)
         travel_m = self.way.travel_m[rows]
         if not len(travel_m):
             return np.empty((0, 2))
-        steps_m = np.arange(travel_m[0], travel_m[-1], side_m)
+        steps_m = np.arange(travel_m[0] + start_m, travel_m[-1], side_m)
         poses = self.way.trajectory.poses[rows][np.searchsorted(travel_m, steps_m)]
         aside_m = ASIDE * max(self.way.footprint.width_m - side_m, 0.0) / 2
         across = np.array([[0.0, aside_m], [0.0, 0.0], [0.0, -aside_m]])

@@ -1,5 +1,7 @@
 """Mistakes in [camera] that put the region ahead outside the image, each named by its cause."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,23 @@ def test_no_cause_is_invented(faulty):
     faulty.settings(camera={"mount": [X, Y, 4.0, 0.0, -0.4, 2.3]})
     finding = faulty.found()["region_outside"]
     assert "cannot be determined" in finding.cause
+
+
+WIDE = {"width": 0.9, "length": 0.7}  # with its margin wider than what the camera shows
+
+
+def test_a_view_narrower_than_the_robot_is_no_mistake(faulty):
+    faulty.settings(robot=WIDE)
+    finding = faulty.found()["region_in_part"]
+    assert finding.level is Level.NOTE
+    share = int(re.search(r"shows (\d+) % of the region", finding.seen)[1])
+    assert 40 <= share < 100
+
+
+@pytest.mark.parametrize("words", sorted(MOUNTS.keys() - {"pitch and roll are exchanged"}))
+def test_mistakes_of_a_narrow_view_are_named(faulty, words):
+    faulty.settings(camera={"mount": [float(value) for value in MOUNTS[words]]}, robot=WIDE)
+    assert words in faulty.found()["region_outside"].cause.split("; less likely")[0]
 
 
 def test_a_robot_in_mm_is_named(faulty):

@@ -159,6 +159,13 @@ def test_a_camera_that_sees_no_ground_that_is_driven_over_is_refused(run, told_s
         label_runs([replace(run, settings=settings)], [told_spans(run)])
 
 
+def test_a_view_that_shows_little_more_than_a_square_gives_patches(run, told_spans):
+    mount = [0.2, 0.0, 0.3, 0.0, 1.25, 0.0]
+    settings = {**run.settings, "camera": {**run.settings["camera"], "mount": mount}}
+    labelled = label_runs([replace(run, settings=settings)], [told_spans(run)], SMALL)
+    assert min(Counter(each.label for each in labelled.chosen).values()) >= 5
+
+
 @pytest.mark.parametrize(
     ("config", "message"),
     [
