@@ -10,6 +10,7 @@ from odometry.checks.evidence.motion import Motion, turns_both_ways
 from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.treads.turns_by_treads import squares_by_parts
 
 SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
 SQUARED = 4.0  # the same of squared speeds is 3.6: no motor is more bent
@@ -24,7 +25,6 @@ HELD = 0.95  # share of the motion explained then: else it may be slip
 # Where less is explained; of 28 real recordings that ratio is 1.1 at most.
 HARDLY_HELD, FAR_UNLIKE = 0.8, 1.5
 PARTS, AS_WELL = 32, 0.9  # of the time, and times what a curve leaves of the way
-STRIPS = 8  # parts of a drive; each may lie on a terrain of its own
 ONE_SIDE = 0.12  # turn at full speed straight on, as a share of that by one tread alone
 NARROW = 1.2  # track widths: robots that were measured turn as if 1.0 to 3.1 wide
 WHOLE = 0.85  # share of the way along that one column has
@@ -129,7 +129,7 @@ def one_side_not_proportional(evidence: Evidence) -> str:
     if plain is None or bent is None or not _explains(plain, bent, 4):
         return ""
     share = float(bent.coefficients[4] / np.mean(np.abs(bent.coefficients[:2])))
-    if abs(share) < ONE_SIDE or _left_by_terrain(m, turns) < AS_WELL * (1 - bent.explained):
+    if abs(share) < ONE_SIDE or _by_terrain(m, turns) < AS_WELL * (1 - bent.explained):
         return ""
     side = "left" if share < 0 else "right"
     return (
@@ -139,18 +139,12 @@ def one_side_not_proportional(evidence: Evidence) -> str:
     )
 
 
-def _left_by_terrain(m: Motion, turns_rad: FloatArray) -> float:
-    """Share of the squared turns that is left where each part of a drive has factors of its own."""
-    columns = np.stack([m.left_m, m.right_m, m.lasts_s, turns_rad], axis=-1)
-    columns = columns[np.isfinite(columns).all(axis=1)]
-    left = 0.0
-    for part in np.array_split(columns, STRIPS):
-        design, target = part[:, :3], part[:, 3]
-        left += float(
-            np.sum((target - design @ np.linalg.lstsq(design, target, rcond=None)[0]) ** 2)
-        )
-    freedom = max(len(columns) - 3 * STRIPS, 1) / len(columns)
-    return left / freedom / max(float(np.sum(columns[:, 3] ** 2)), 1e-300)
+def _by_terrain(m: Motion, turns_rad: FloatArray) -> float:
+    """Share of the squared turns that is left where each part of a drive has its own scales."""
+    rows = np.stack([m.left_m, m.right_m, m.lasts_s])
+    known = np.isfinite(turns_rad) & np.isfinite(rows).all(axis=0)
+    whole = float(np.sum(turns_rad[known] ** 2))
+    return squares_by_parts(rows[:, known], turns_rad[known]) / max(whole, 1e-300)
 
 
 def holds_the_mean(evidence: Evidence) -> str:

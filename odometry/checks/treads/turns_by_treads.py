@@ -13,6 +13,7 @@ from odometry.checks.evidence.once import once
 LEAST_WINDOWS = 40
 ORDINARY = 0.97  # share of the windows that are compared: those that the treads explain best
 STANDING = 0.02  # of the ordinary fastest speed of a tread
+PARTS = 8  # of a drive, each of which may lie on a terrain of its own
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,11 @@ class Turns:
         left = float(np.sum((self.turned_rad - found @ rows) ** 2))
         return left / max(self.squares, 1e-300), found
 
+    def left_by_parts(self) -> float:
+        """The same where each part of the drive has scales of its own."""
+        rows = np.stack([self.left_m, self.right_m, self.lasts_s])
+        return squares_by_parts(rows, self.turned_rad) / max(self.squares, 1e-300)
+
     def constants_s(self, fastest_m_s: float) -> tuple[FloatArray, FloatArray]:
         """Seconds (K,) in which each tread moves, with the sign of its travel."""
         found = []
@@ -54,6 +60,19 @@ class Turns:
             moves = np.abs(way_m) > STANDING * fastest_m_s * self.lasts_s
             found.append(np.where(moves, np.sign(way_m) * self.lasts_s, 0.0))
         return found[0], found[1]
+
+
+def squares_by_parts(rows: FloatArray, target: FloatArray) -> float:
+    """Squares that columns (P, K) leave of (K,) in the order of time where they fit each part.
+
+    They are as large as those of one fit of P columns would be if all parts were alike.
+    """
+    left, parts = 0.0, np.array_split(np.arange(len(target)), PARTS)
+    for part in parts:
+        fitted = least_squares(rows[:, part], target[part]) @ rows[:, part]
+        left += float(np.sum((target[part] - fitted) ** 2))
+    free, fitted_by_parts = len(target) - len(rows), len(rows) * (PARTS - 1)
+    return left * free / max(free - fitted_by_parts, 1)
 
 
 @once
