@@ -11,12 +11,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
 LEAST_STEP_M, MOST_STEP_M = 0.02, 1.5  # that are looked for
 BANDS = 19
 BAND = (MOST_STEP_M / LEAST_STEP_M) ** (1 / BANDS)  # of steps that are tried together
 BIN = 1 / 16  # of the least step of a band
+PARTS = 8  # of the bins of a band, every eighth: the steps of a band need no shorter transform
 FINER = 4  # frequencies than positions resolve
 MOST_BINS = 2**17  # of a transform: steps of 0.02 m are looked for on 160 m, of 0.5 m on 4 km
 MANY_CHANGES = 20  # of a coordinate, that are whole multiples of the least
@@ -115,9 +116,11 @@ def _band(
     """Steps (F,) of a band, and how well places (M,) or their means agree with each."""
     origin, width = float(min(places_m.min(), means_m.min())), BIN * least_m
     size = 1 << math.ceil(math.log2(FINER * _bins(places_m, means_m, least_m)))
-    frequencies = np.fft.rfftfreq(size, width)
+    waves = np.arange(int(BIN * size / BAND), int(BIN * size) + 1)
+    frequencies = waves * (1 / (size * width))
     inside = (frequencies > 1 / (BAND * least_m)) & (frequencies <= 1 / least_m)
-    return 1 / frequencies[inside], lambda of: np.abs(_phasors(of - origin, width, size)[inside])
+    waves = waves[inside]
+    return 1 / frequencies[inside], lambda of: np.abs(_phasors(of - origin, width, size, waves))
 
 
 def _bins(places_m: FloatArray, means_m: FloatArray, least_m: float) -> int:
@@ -125,10 +128,15 @@ def _bins(places_m: FloatArray, means_m: FloatArray, least_m: float) -> int:
     return int(np.ptp(np.concatenate([places_m, means_m])) / (BIN * least_m)) + 1
 
 
-def _phasors(places_m: FloatArray, width_m: float, size: int) -> AnyArray:
-    """Means (F,) of unit phasors of places at all frequencies."""
+def _phasors(places_m: FloatArray, width_m: float, size: int, waves: IntArray) -> AnyArray:
+    """Means (F,) of unit phasors of places, of so many waves (F,) on all bins."""
     counts = np.bincount((places_m / width_m).astype(np.int64), minlength=size)
-    return np.fft.rfft(counts) / len(places_m)
+    parts = np.fft.rfft(counts.reshape(-1, PARTS), axis=0)[waves]
+    turn = np.exp(-2j * np.pi / size * waves)  # from one part to the next
+    phasors = parts[:, -1]
+    for part in parts[:, -2::-1].T:
+        phasors = phasors * turn + part
+    return phasors / len(places_m)
 
 
 def _neighbours(stamps_s: FloatArray, places_m: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from odometry.positions.rounding import rounding_step_m, steps_m
+from odometry.positions.rounding import (
+    BAND,
+    BIN,
+    LEAST_STEP_M,
+    _band,
+    rounding_step_m,
+    steps_m,
+)
 
 STAMPS_S = np.arange(0.0, 150.0, 0.1)
 LOOPS = np.column_stack([9 * np.sin(STAMPS_S / 9), 6 * np.sin(STAMPS_S / 7 + 1)])
@@ -87,3 +94,12 @@ def test_steady_speeds_of_a_simulation_are_no_steps():
     stamps_s = np.arange(0.0, 20.0, 0.05)
     path = np.column_stack([stamps_s, np.zeros(len(stamps_s))])
     assert steps_m(stamps_s, path).tolist() == [0.0, 0.0]
+
+
+def test_the_agreement_with_each_step_is_the_mean_of_phasors(rng):
+    places = rng.uniform(0, 30, 500)
+    steps, agreement_of = _band(places, places, LEAST_STEP_M)
+    binned = np.floor((places - places.min()) / (BIN * LEAST_STEP_M)) * BIN * LEAST_STEP_M
+    expected = [abs(np.exp(-2j * np.pi * binned / step).mean()) for step in steps]
+    assert LEAST_STEP_M <= steps.min() < steps.max() < BAND * LEAST_STEP_M
+    np.testing.assert_allclose(agreement_of(places), expected, atol=1e-9)
