@@ -32,11 +32,13 @@ def stuck_poses(record: Record) -> BoolArray:
     found = np.zeros(len(record.poses), dtype=np.bool_)
     led_times = _led(record)
     ends = np.append(np.flatnonzero(record.breaks != ""), len(found) - 1) + 1
-    begin = 0
-    for end in ends:
+    begin, poses = 0, record.poses.tolist()
+    for end in ends.tolist():
         while begin < end:
-            after = begin + _stay(record.poses[begin:end])
-            found[begin:after] = _is_led_away(led_times[begin:after], record.pose_s[begin:after])
+            after = _first_away(poses, begin, end)
+            if record.pose_s[after - 1] - record.pose_s[begin] >= LEAST_S:
+                stay = slice(begin, after)
+                found[stay] = _is_led_away(led_times[stay], record.pose_s[stay])
             begin = after
     return found
 
@@ -71,12 +73,14 @@ def _heading_rad(record: Record, by_treads_rad: FloatArray) -> FloatArray:
     return np.asarray(np.interp(record.stamps_s, measured.stamps_s, heading_rad))
 
 
-def _stay(poses: FloatArray) -> int:
-    """How many of these poses (K, 3), from the first, stay near it."""
-    apart = np.abs(poses - poses[0])
-    moved = np.hypot(apart[:, 0], apart[:, 1]) > NEAR_M
-    moved |= apart[:, 2] > NEAR_RAD
-    return int(np.argmax(moved)) if moved.any() else len(poses)
+def _first_away(poses: list[list[float]], begin: int, end: int) -> int:
+    """The first of poses up to `end` that is not near the one at `begin`; else `end`."""
+    x, y, yaw = poses[begin]
+    for place in range(begin + 1, end):
+        of_x, of_y, of_yaw = poses[place]
+        if abs(of_yaw - yaw) > NEAR_RAD or np.hypot(of_x - x, of_y - y) > NEAR_M:
+            return place
+    return end
 
 
 def _is_led_away(led_times: FloatArray, pose_s: FloatArray) -> bool:
