@@ -130,15 +130,17 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
 def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
     """Correlation (m,) of one signal (n,) with each of others (m, n), where both are known."""
     correlations = np.full(len(others), np.nan)
-    count = max(TOGETHER // len(one), 1)
+    count, of_one = max(TOGETHER // len(one), 1), np.isfinite(one)
     for begin in range(0, len(others), count):
         some = others[begin : begin + count]
-        known = np.isfinite(some) & np.isfinite(one)
-        counts = known.sum(axis=1)
-        if counts.min() == len(one):
+        known = np.isfinite(some)
+        if of_one.all() and known.all():
+            counts = np.full(len(some), len(one))
             a, b = one - one.mean(), some - some.mean(axis=1)[:, None]
             squares, products = np.sum(a**2), b @ a
         else:
+            known &= of_one
+            counts = known.sum(axis=1)
             a, b = (_centred(of, known, counts) for of in (one, some))
             squares, products = np.sum(a**2, axis=1), np.sum(a * b, axis=1)
         sizes = np.sqrt(squares * np.einsum("ij,ij->i", b, b))

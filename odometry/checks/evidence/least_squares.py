@@ -11,12 +11,36 @@ LEAST_SINE, LEAST_LENGTH = 1e-2, 1e-4
 SQUARES = (1e-200, 1e100)
 
 
+class Columns:
+    """Columns (P, K), and the inverse of their products, which is computed once."""
+
+    def __init__(self, values: FloatArray) -> None:
+        self.values = values
+        self._inverse = _inverse_of((values @ values.T).tolist())
+
+    @property
+    def independent(self) -> bool:
+        """Whether none of them follows from the others."""
+        known = self._inverse is not None
+        return known or bool(np.linalg.matrix_rank(self.values.T) == len(self.values))
+
+    def coefficients(self, target: FloatArray) -> FloatArray:
+        """Those (P,) by which least is left of a target (K,)."""
+        if self._inverse is None:
+            found = np.linalg.lstsq(self.values.T, target, rcond=None)[0]
+            return np.asarray(found, dtype=np.float64)
+        return np.asarray(self._inverse @ (self.values @ target))
+
+    def variances(self) -> FloatArray:
+        """Variances (P,) of the coefficients, where those of a target are one."""
+        if self._inverse is None:
+            return np.diag(np.linalg.pinv(self.values @ self.values.T))
+        return np.diag(self._inverse)
+
+
 def least_squares(columns: FloatArray, target: FloatArray) -> FloatArray:
     """The coefficients (P,) of columns (P, K) by which least is left of a target (K,)."""
-    inverse = _inverse(columns)
-    if inverse is None:
-        return np.asarray(np.linalg.lstsq(columns.T, target, rcond=None)[0], dtype=np.float64)
-    return np.asarray(inverse @ (columns @ target))
+    return Columns(columns).coefficients(target)
 
 
 def of_products(products: FloatArray) -> FloatArray | None:
@@ -28,24 +52,8 @@ def of_products(products: FloatArray) -> FloatArray | None:
     return None if inverse is None else np.asarray(inverse @ products[:-1, -1])
 
 
-def independent(columns: FloatArray) -> bool:
-    """Whether none of the columns (P, K) follows from the others."""
-    known = _inverse(columns) is not None
-    return known or bool(np.linalg.matrix_rank(columns.T) == len(columns))
-
-
-def variances(columns: FloatArray) -> FloatArray:
-    """Variances (P,) of the coefficients of columns (P, K), where those of a target are one."""
-    inverse = _inverse(columns)
-    return np.diag(np.linalg.pinv(columns @ columns.T) if inverse is None else inverse)
-
-
-def _inverse(columns: FloatArray) -> FloatArray | None:
-    """The inverse (P, P) of the products of columns (P, K); None where it would not be exact."""
-    return _inverse_of((columns @ columns.T).tolist())
-
-
 def _inverse_of(products: list[list[float]]) -> FloatArray | None:
+    """The inverse (P, P) of products (P, P); None where it would not be exact."""
     squares = [products[place][place] for place in range(len(products))]
     if not SQUARES[0] < min(squares) <= max(squares) < SQUARES[1]:
         return None

@@ -5,12 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.evidence.least_squares import (
-    independent,
-    least_squares,
-    of_products,
-    variances,
-)
+from odometry.checks.evidence.least_squares import Columns, least_squares, of_products
 
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out
@@ -78,31 +73,31 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     rows = np.stack(columns)
     measured = np.isfinite(target) & np.isfinite(rows).all(axis=0)
     known, of_known = rows[:, measured], target[measured]
-    if len(of_known) < LEAST_WINDOWS or not independent(known):
+    if len(of_known) < LEAST_WINDOWS or not (fitted := Columns(known)).independent:
         return None
-    coefficients, kept = _least_absolute(known, of_known), np.ones(len(of_known), dtype=np.bool_)
+    coefficients, kept = _least_absolute(fitted, of_known), np.ones(len(of_known), dtype=np.bool_)
     for done in range(ROUNDS):
         sizes = np.abs(of_known - coefficients @ known)
-        before, kept = kept, sizes <= CUTOFF * 1.4826 * _median(sizes) + 1e-12
-        if kept.sum() < LEAST_WINDOWS or not independent(known[:, kept]):
-            kept = before
-        if done and (kept == before).all():
+        now = sizes <= CUTOFF * 1.4826 * _median(sizes) + 1e-12
+        changed = bool((now != kept).any())
+        if changed and now.sum() >= LEAST_WINDOWS and (few := Columns(known[:, now])).independent:
+            fitted, kept = few, now
+        elif done:
             break
-        coefficients = least_squares(known[:, kept], of_known[kept])
-    left = of_known - coefficients @ known
-    fitted, of_fitted = known[:, kept], of_known[kept]
+        coefficients = fitted.coefficients(of_known[kept])
+    left, of_fitted = of_known - coefficients @ known, of_known[kept]
     variance = np.sum(left[kept] ** 2) / max(len(of_fitted) - len(columns), 1)
     all_kept = measured.copy()
     all_kept[measured] = kept
     return Relation(
         coefficients,
-        np.sqrt(np.maximum(variance * variances(fitted), 0.0)),
-        _correlation(of_fitted, coefficients @ fitted),
+        np.sqrt(np.maximum(variance * fitted.variances(), 0.0)),
+        _correlation(of_fitted, coefficients @ fitted.values),
         all_kept,
         len(of_known),
         target - coefficients @ rows,
         1 - float(np.sum(left**2) / max(np.sum(of_known**2), 1e-300)),
-        _distinct(fitted, of_fitted),
+        _distinct(fitted.values, of_fitted),
     )
 
 
@@ -134,10 +129,11 @@ def _distinct(columns: FloatArray, target: FloatArray) -> bool:
     return left < EXPLAINS * (left + float(parts[-1] ** 2))
 
 
-def _least_absolute(columns: FloatArray, target: FloatArray) -> FloatArray:
+def _least_absolute(start: Columns, target: FloatArray) -> FloatArray:
     """A start that a third of outliers does not move: least absolute residuals, by weights."""
+    columns = start.values
     both = np.vstack([columns, target])
-    coefficients = least_squares(columns, target)
+    coefficients = start.coefficients(target)
     for _ in range(ROUNDS):
         away = np.abs(target - coefficients @ columns)
         weights = 1 / np.maximum(away, 1e-3 * away.sum() / len(away) + 1e-12)

@@ -93,8 +93,12 @@ def _all_round(spans: HeadingSpans) -> bool:
 def _straightened(yaw_rad: FloatArray, sine: float, cosine: float) -> FloatArray:
     """Heading h of which yaw = h + sine sin h + cosine cos h, by repeated substitution."""
     heading = yaw_rad
+    if sine == 0 == cosine:
+        return heading
     for _ in range(ROUNDS):
-        heading = yaw_rad - sine * np.sin(heading) - cosine * np.cos(heading)
+        before, heading = heading, yaw_rad - sine * np.sin(heading) - cosine * np.cos(heading)
+        if (heading == before).all():
+            break
     return heading
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import variances
+from odometry.checks.evidence.least_squares import Columns
 from odometry.checks.treads.turns_by_treads import Turns, turns_by_treads
 
 STANDING = 0.01  # of the ordinary fastest speed
@@ -40,7 +40,8 @@ def _lost_m(evidence: Evidence, turns: Turns, side: int) -> float:
     rows = np.stack([turns.left_m, turns.right_m, turns.lasts_s])
     _, plain = turns.fit(*rows)
     left, found = turns.fit(*rows, unread)
-    sigma = np.sqrt(left * turns.squares / len(unread) * variances(np.vstack([rows, unread]))[3])
+    variances = Columns(np.vstack([rows, unread])).variances()
+    sigma = np.sqrt(left * turns.squares / len(unread) * variances[3])
     lost_m = float(found[3] / found[side])
     near = unread != 0
     before, after = (

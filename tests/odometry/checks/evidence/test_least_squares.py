@@ -2,12 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import (
-    independent,
-    least_squares,
-    of_products,
-    variances,
-)
+from odometry.checks.evidence.least_squares import Columns, least_squares, of_products
 from odometry.checks.evidence.once import once
 from odometry.checks.unexplained import disagreement
 from tests.odometry.checks.drives import winding
@@ -23,8 +18,8 @@ def test_products_give_what_a_decomposition_gives(rng, count):
     both = np.vstack([columns, target])
     np.testing.assert_allclose(of_products(both @ both.T), expected, rtol=1e-10)
     inverse = np.linalg.pinv(columns @ columns.T)
-    np.testing.assert_allclose(variances(columns), np.diag(inverse), rtol=1e-8)
-    assert independent(columns)
+    np.testing.assert_allclose(Columns(columns).variances(), np.diag(inverse), rtol=1e-8)
+    assert Columns(columns).independent
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-9, 1e-5])
@@ -37,7 +32,7 @@ def test_columns_that_nearly_follow_from_others_are_decomposed(rng, off, more):
     np.testing.assert_array_equal(least_squares(columns, target), expected)
     both = np.vstack([columns, target])
     assert of_products(both @ both.T) is None
-    assert independent(columns) == (off > 0)
+    assert Columns(columns).independent == (off > 0)
 
 
 @pytest.mark.parametrize("size", [1e-160, 1e160])
@@ -50,7 +45,7 @@ def test_squares_that_vanish_or_overflow_are_not_used(rng, size):
 
 def test_a_column_that_is_nothing_beside_another_counts_as_none(rng):
     columns = np.array([[1.0], [1e-17]]) * rng.standard_normal((2, 60))
-    assert not independent(columns)
+    assert not Columns(columns).independent
 
 
 def test_an_answer_is_looked_for_once_and_belongs_to_its_evidence():
