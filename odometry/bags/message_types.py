@@ -5,7 +5,7 @@ taken. A type that ROS does not ship cannot be read without its definition.
 """
 
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from rosbags.typesys import (
@@ -19,6 +19,8 @@ from rosbags.typesys import (
 from odometry.bags.topic import READABLE, Buffer, Connection, Message
 from odometry.errors import BagError
 
+MOST_COMPILED = 256  # types, of a batch of bags
+
 Reader = Callable[[Buffer, str], Any]
 
 
@@ -26,7 +28,6 @@ class MessageTypes:
     """Decodes messages; the definitions of a type are compiled once."""
 
     def __init__(self) -> None:
-        self._of_type: dict[tuple[str, str, str], Reader] = {}
         self._of_connection: dict[int, tuple[Connection, Reader]] = {}
 
     def decode(self, message: Message) -> Any:
@@ -63,51 +64,55 @@ class MessageTypes:
                 f"{connection.topic}: its messages are encoded as {connection.encoding!r}; "
                 f"expected one of {', '.join(READABLE)}"
             )
-        key = (connection.message_type, connection.encoding, connection.definition)
-        if key not in self._of_type:
-            store = get_typestore(Stores.EMPTY)
-            try:
-                store.register(self._definitions(connection))
-                store.get_msgdef(connection.message_type)
-            except BagError:
-                raise
-            except Exception as problem:  # rosbags raises several, and KeyError for what is missing
-                raise BagError(
-                    f"{connection.topic}: the definition of {connection.message_type} cannot be "
-                    f"used: {problem}"
-                ) from problem
-            ros1 = connection.encoding == "ros1"
-            self._of_type[key] = store.deserialize_ros1 if ros1 else store.deserialize_cdr
-        return self._of_type[key]
-
-    def _definitions(self, connection: Connection) -> dict[str, Any]:
-        """Definitions of a type and of its parts, the bag's own before shipped ones."""
-        own: dict[str, Any] = {}
+        own = connection.definition, connection.schema
         try:
-            if connection.definition and connection.schema == "msg":
-                own = get_types_from_msg(connection.definition, connection.message_type)
-            elif connection.definition:
-                for text in _idl_texts(connection.definition):
-                    own |= get_types_from_idl(text)
-        except TypesysError:
-            if connection.message_type not in _shipped(connection.encoding):
-                raise
-            own = {}
-        wanted, found, seen = [connection.message_type], dict(own), set[str]()
-        while wanted:
-            name = wanted.pop()
-            if name not in found:
-                shipped = _shipped(connection.encoding)
-                if name not in shipped:
-                    raise BagError(
-                        f"{connection.topic}: the bag has no definition of {name}, and ROS does "
-                        "not ship one; record the bag again with a recorder that stores "
-                        "definitions (MCAP does, SQLite since ROS 2 Iron)"
-                    )
-                found[name] = shipped[name]
-            seen.add(name)
-            wanted += [other for other in _parts(found[name]) if other not in seen]
-        return found
+            return _compiled(connection.message_type, connection.encoding, *own)
+        except BagError as problem:
+            raise BagError(f"{connection.topic}: {problem}") from problem
+
+
+@lru_cache(MOST_COMPILED)
+def _compiled(message_type: str, encoding: str, definition: str, schema: str) -> Reader:
+    """Reader of a type, of any bag that defines it so: to make one takes as long as a small bag."""
+    store = get_typestore(Stores.EMPTY)
+    try:
+        store.register(_definitions(message_type, encoding, definition, schema))
+        store.get_msgdef(message_type)
+    except BagError:
+        raise
+    except Exception as problem:  # rosbags raises several, and KeyError for what is missing
+        raise BagError(f"the definition of {message_type} cannot be used: {problem}") from problem
+    return store.deserialize_ros1 if encoding == "ros1" else store.deserialize_cdr
+
+
+def _definitions(message_type: str, encoding: str, definition: str, schema: str) -> dict[str, Any]:
+    """Definitions of a type and of its parts, the bag's own before shipped ones."""
+    own: dict[str, Any] = {}
+    try:
+        if definition and schema == "msg":
+            own = get_types_from_msg(definition, message_type)
+        elif definition:
+            for text in _idl_texts(definition):
+                own |= get_types_from_idl(text)
+    except TypesysError:
+        if message_type not in _shipped(encoding):
+            raise
+        own = {}
+    wanted, found, seen = [message_type], dict(own), set[str]()
+    while wanted:
+        name = wanted.pop()
+        if name not in found:
+            shipped = _shipped(encoding)
+            if name not in shipped:
+                raise BagError(
+                    f"the bag has no definition of {name}, and ROS does not ship one; record the "
+                    "bag again with a recorder that stores definitions (MCAP does, SQLite since "
+                    "ROS 2 Iron)"
+                )
+            found[name] = shipped[name]
+        seen.add(name)
+        wanted += [other for other in _parts(found[name]) if other not in seen]
+    return found
 
 
 @cache
