@@ -120,6 +120,7 @@ def followed(wanted, most, start):
     """Values (N,) that go from a start towards those wanted (N,), by at most so much a row."""
     rows, at = [], float(start)
     for value in wanted.tolist():
-        at += min(max(value - at, -most), most)
+        step = value - at
+        at += most if step > most else -most if step < -most else step
         rows.append(at)
     return np.array(rows)
