@@ -9,7 +9,8 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.held_out import balanced_accuracy, paired_difference
+from terrain.classification.held_out import paired_difference
+from terrain.classification.neighbours.validation import balanced_accuracy
 from terrain.classification.photographs.patches import (
     LabelledPatches,
     find_photos,

@@ -11,6 +11,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.neighbours.validation import balanced_accuracy
 from terrain.classification.photographs.patches import LabelledPhoto
 from terrain.errors import ImageError
 from terrain.images import read_image
@@ -21,12 +22,6 @@ BOOTSTRAP_SAMPLES = 2000
 def confusion(codes: IntArray, answers: IntArray, n_classes: int) -> IntArray:
     """Count answers (columns) by true class (rows), shape (classes, classes)."""
     return np.asarray(confusion_matrix(codes, answers, labels=range(n_classes)))
-
-
-def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
-    """Return the mean over the classes in `codes` of the share that is answered rightly."""
-    right = codes == answers
-    return float(np.mean([right[codes == c].mean() for c in np.unique(codes)]))
 
 
 def photo_votes(

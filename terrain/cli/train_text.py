@@ -8,14 +8,9 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.outputs.output_file import picture_source
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.held_out import (
-    balanced_accuracy,
-    confusion,
-    confusion_text,
-    photo_votes,
-)
+from terrain.classification.held_out import confusion, confusion_text, photo_votes
 from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
-from terrain.classification.neighbours.validation import CrossValidation
+from terrain.classification.neighbours.validation import CrossValidation, balanced_accuracy
 from terrain.classification.photographs.patches import LabelledPatches
 from terrain.cli.outputs import claim_picture
 

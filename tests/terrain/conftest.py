@@ -1,5 +1,7 @@
 """A tiny world of two grounds: rays are cast here, with no code of the packages."""
 
+import pickle
+from hashlib import sha256
 from types import SimpleNamespace
 
 import cv2
@@ -9,6 +11,8 @@ from matplotlib.figure import Figure
 
 from odometry.report import figure
 from terrain.classification.classifier import TerrainClassifier
+from terrain.classification.features import feature_jobs
+from terrain.classification.features.features import feature_matrix
 from terrain.main_job import run_odometry
 from terrain.results import write_results
 from tests.terrain.written_runs import ROBOT, drive_curves, twist, write_csv, write_toml
@@ -131,6 +135,27 @@ def _undrawn_figures(request, monkeypatch):
     pixel = Figure(figsize=(0.01, 0.01), dpi=100)
     write = figure._write_png
     monkeypatch.setattr(figure, "_write_png", lambda file, _, source: write(file, pixel, source))
+
+
+FEATURES = {}
+
+
+@pytest.fixture(autouse=True)
+def _features_once(monkeypatch):
+    """Features of the same patches, as a test before computed them: models learn the same ones.
+
+    What a test asks for again is computed, so that it can compare.
+    """
+    asked = set()
+
+    def features(patches, settings):
+        content = sha256(pickle.dumps((list(patches), settings))).digest()
+        if content in asked or content not in FEATURES:
+            FEATURES[content] = feature_matrix(patches, settings)
+        asked.add(content)
+        return FEATURES[content].copy()
+
+    monkeypatch.setattr(feature_jobs, "feature_matrix", features)
 
 
 @pytest.fixture(scope="session")

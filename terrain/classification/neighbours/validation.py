@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from sklearn.metrics import balanced_accuracy_score
 from sklearn.model_selection import StratifiedGroupKFold
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
@@ -77,6 +76,16 @@ class Fold(NamedTuple):
     model: Neighbours
 
 
+def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
+    """Mean over the classes in `codes` (n,) of the share that is answered rightly.
+
+    As scikit-learn's `balanced_accuracy_score`, bit by bit, which takes thirty times as long.
+    """
+    counts = np.bincount(codes)
+    right = np.bincount(codes[codes == answers], minlength=len(counts))
+    return float(np.mean(right[counts > 0] / counts[counts > 0]))
+
+
 def grouped_folds(codes: IntArray, groups: AnyArray) -> list[tuple[IntArray, IntArray]]:
     """Split into training and test indices, groups whole and classes balanced.
 
@@ -128,7 +137,7 @@ def best_way(
         tried.append((way, found, folds))
     return max(
         tried,
-        key=lambda of: balanced_accuracy_score(of[1].codes, of[1].probabilities.argmax(axis=1)),
+        key=lambda of: balanced_accuracy(of[1].codes, of[1].probabilities.argmax(axis=1)),
     )
 
 
@@ -217,5 +226,5 @@ def _tempered_by_others(votes: FloatArray, codes: IntArray, tests: list[IntArray
 
 
 def _best(probabilities: FloatArray, codes: IntArray, rows: IntArray) -> int:
-    scores = [balanced_accuracy_score(codes[rows], p[rows].argmax(axis=1)) for p in probabilities]
+    scores = [balanced_accuracy(codes[rows], p[rows].argmax(axis=1)) for p in probabilities]
     return int(np.flatnonzero(np.array(scores) == max(scores))[-1])

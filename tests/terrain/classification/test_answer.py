@@ -16,7 +16,6 @@ from terrain.classification.answer import (
     UNNOTICED,
     Classification,
 )
-from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.likeness.likeness import Likeness
 from terrain.cli.classify import classify
@@ -24,11 +23,6 @@ from tests.terrain.classification.test_no_ground import photographs
 
 LIKE, UNLIKE = (Likeness(20, 0.5, 0.5, (), beyond=beyond) for beyond in (0.9, 1.1))
 DOUBTED = Classification("mud", 0.52, 0.1, {"mud": 0.52, "snow": 0.48}, probability_right=0.69)
-
-
-@pytest.fixture(scope="module")
-def model():
-    return TerrainClassifier().fit(*photographs(1, photos=40))
 
 
 def test_a_doubtful_name_is_unknown_with_its_reason():

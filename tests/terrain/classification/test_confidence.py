@@ -32,11 +32,6 @@ NEAR, FAR = np.array([0.1]), np.array([3.0])
 VOTES = np.array([[0.1, 0.7, 0.2]])
 
 
-@pytest.fixture(scope="module")
-def model():
-    return TerrainClassifier().fit(*photographs(1, photos=40))
-
-
 def known(weights=(2.0, 0.5, -1.0, -1.0)):
     return AnswerConfidence(np.array(weights))
 

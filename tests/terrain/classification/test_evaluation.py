@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from scipy.stats import sem
+from sklearn.metrics import balanced_accuracy_score
 
 from terrain.classification.held_out import (
-    balanced_accuracy,
     balanced_accuracy_interval,
     confusion,
     confusion_text,
@@ -11,6 +11,7 @@ from terrain.classification.held_out import (
     photo_votes,
     rejection_roc_area,
 )
+from terrain.classification.neighbours.validation import balanced_accuracy
 
 
 def test_confusion_and_balanced_accuracy_by_hand():
@@ -23,6 +24,13 @@ def test_confusion_and_balanced_accuracy_by_hand():
     assert lines[0].split() == ["sand", "soil", "tile", "patches"]
     assert lines[1].split() == ["sand", "75.0", "25.0", "0.0", "4"]
     assert lines[3].split() == ["tile", "0.0", "0.0", "0.0", "0"]
+
+
+def test_balanced_accuracy_is_that_of_scikit_learn_bit_by_bit(rng):
+    for classes in range(2, 12):
+        codes = np.append(np.arange(classes), rng.integers(0, classes, 90))
+        answers = np.where(rng.random(len(codes)) < 0.7, codes, rng.permutation(codes))
+        assert balanced_accuracy(codes, answers) == balanced_accuracy_score(codes, answers)
 
 
 def test_patches_of_a_photograph_vote_with_their_probabilities():

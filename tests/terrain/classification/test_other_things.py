@@ -29,11 +29,6 @@ def places(rng, middle, count=EACH):
 
 
 @pytest.fixture(scope="module")
-def model():
-    return TerrainClassifier().fit(*photographs(1, photos=40))
-
-
-@pytest.fixture(scope="module")
 def learned():
     rng = np.random.default_rng(4)
     sideways = 3 * np.eye(FEATURES)[1]
