@@ -99,7 +99,7 @@ stride_m = 0.5
 
 def fails(reader, content):
     """None where it is read, else the error of the project; others and warnings are raised."""
-    reader.file.write_bytes(content)
+    _put(reader.file, content)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -107,8 +107,14 @@ def fails(reader, content):
     except OdometryError as error:
         return error
     finally:
-        reader.file.write_bytes(reader.valid)
+        _put(reader.file, reader.valid)
     return None
+
+
+def _put(file, content):
+    """In a new file: one that is cut to nothing first waits for the disk on some file systems."""
+    file.unlink(missing_ok=True)
+    file.write_bytes(content)
 
 
 def readers(folder):
