@@ -39,6 +39,12 @@ def run():
 
 
 @pytest.fixture(scope="module")
+def followed(run):
+    """Its modes, as they are followed without any setting."""
+    return follow_modes(run, SET)
+
+
+@pytest.fixture(scope="module")
 def straight():
     """Both terrains move the same when treads go together."""
     rng, size = np.random.default_rng(4), 500
@@ -55,8 +61,8 @@ def without_labels(run):
     return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
-def test_a_change_of_terrain_is_recognised_within_seconds(run):
-    track = follow_modes(run, SET)
+def test_a_change_of_terrain_is_recognised_within_seconds(followed):
+    track = followed
     sure_of_tar = track.probabilities[:, 1] > 0.9
     assert np.flatnonzero(track.probabilities[:, 0] > 0.9)[0] * STEP_S < 2.0
     assert not sure_of_tar[:CHANGE].any()
@@ -88,19 +94,18 @@ def test_what_moves_in_a_gap_of_odometry_determines_nothing(run):
     np.testing.assert_array_equal(same.probabilities[:, 0], told)
 
 
-def test_probabilities_sum_to_one_and_keep_their_floor(run):
+def test_probabilities_sum_to_one_and_keep_their_floor(run, followed):
     track = follow_modes(run, SET, ModesConfig(floor=0.01))
     np.testing.assert_allclose(track.probabilities.sum(axis=1), 1.0, atol=1e-12)
     assert track.probabilities.min() >= 0.01 * (1 - 1e-9)
-    assert follow_modes(run, SET).probabilities.min() < 0.01
+    assert followed.probabilities.min() < 0.01
 
 
-def test_errors_that_last_are_in_the_sigmas(run):
+def test_errors_that_last_are_in_the_sigmas(run, followed):
     """All of the variance but the share of one measurement in the time that errors last."""
-    plain = follow_modes(run, SET)
     modes = replace(SET.modes, errors_last_s=10 * STEP_S)
     lasting = follow_modes(run, replace(SET, modes=modes))
-    added = (lasting.sigmas[:CHANGE] ** 2 - plain.sigmas[:CHANGE] ** 2)[:, :2]
+    added = (lasting.sigmas[:CHANGE] ** 2 - followed.sigmas[:CHANGE] ** 2)[:, :2]
     expected = 0.9 * modes.measurement_variance[0]  # but where modes are in doubt
     np.testing.assert_allclose(np.median(added, axis=0), expected, rtol=0.03)
 
@@ -138,7 +143,7 @@ def test_a_rough_stretch_says_less():
     assert most[1] < 0.6
 
 
-def test_far_above_the_speeds_of_identification_nothing_is_learned(run):
+def test_far_above_the_speeds_of_identification_nothing_is_learned(run, followed):
     """Beyond 1.2 times the fastest run, as if it were not measured."""
     fastest_m_s = float(np.abs(run.odometry.stack("v_left", "v_right")).max())
     slower, equal = (
@@ -149,21 +154,21 @@ def test_far_above_the_speeds_of_identification_nothing_is_learned(run):
     faster = np.abs(signals.tread_speeds_m_s).max(axis=1) > 1.2 * fastest_m_s / 10
     assert np.isnan(slower.normalised_squared[1:][faster[:-1]]).all()
     assert faster.mean() > 0.5
-    np.testing.assert_array_equal(equal.probabilities, follow_modes(run, SET).probabilities)
+    np.testing.assert_array_equal(equal.probabilities, followed.probabilities)
     assert slower.probabilities.max() < equal.probabilities.max()
 
 
-def test_the_same_input_gives_the_same_bits(run):
-    first, second = follow_modes(run, SET), follow_modes(run, SET)
+def test_the_same_input_gives_the_same_bits(run, followed):
+    first, second = followed, follow_modes(run, SET)
     for name in ("probabilities", "means", "sigmas", "normalised_squared"):
         assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
 
 
 @pytest.mark.slow
-def test_truth_and_labels_are_for_scoring_alone(run):
+def test_truth_and_labels_are_for_scoring_alone(run, followed):
     """Every row of the truth names the wrong ground, and holds to the next."""
     truth = table({"t": np.array([5.0, 20.0]), "terrain": np.array(["tar", "ice"])})
-    expected, bare = follow_modes(run, SET), without_labels(run)
+    bare = without_labels(run)
     for other, labels in (
         (bare, ["unknown"] * 2 * CHANGE),
         (replace(run, truth=truth), ["tar"] * CHANGE + ["ice"] * CHANGE),
@@ -171,8 +176,8 @@ def test_truth_and_labels_are_for_scoring_alone(run):
     ):
         track = follow_modes(other, SET)
         assert track.labels.tolist() == labels
-        assert track.probabilities.tobytes() == expected.probabilities.tobytes()
-        assert track.means.tobytes() == expected.means.tobytes()
+        assert track.probabilities.tobytes() == followed.probabilities.tobytes()
+        assert track.means.tobytes() == followed.means.tobytes()
 
 
 def test_a_straight_leaves_it_open(straight):
