@@ -79,7 +79,7 @@ class Fold(NamedTuple):
 def balanced_accuracy(codes: IntArray, answers: IntArray) -> float:
     """Mean over the classes in `codes` (n,) of the share that is answered rightly.
 
-    As scikit-learn's `balanced_accuracy_score`, bit by bit, which takes thirty times as long.
+    As scikit-learn's `balanced_accuracy_score`, bit by bit, which takes a hundred times as long.
     """
     counts = np.bincount(codes)
     right = np.bincount(codes[codes == answers], minlength=len(counts))
