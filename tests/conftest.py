@@ -35,7 +35,7 @@ settings.load_profile("project")
 def pytest_collection():
     """Seek no garbage among the tests, of which nothing goes: neither here nor in their run.
 
-    In their run after 10,000 new objects and not 700: 3 % of the time in place of 5.
+    In their run after 100,000 new objects and not 700: 1 % of the time in place of 5.
     """
     gc.disable()
     try:
