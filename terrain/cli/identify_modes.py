@@ -84,7 +84,7 @@ def identify_modes(
     from odometry.modes.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
     from terrain.cli.outputs import claim_file, comment
-    from terrain.cli.recordings import read_runs, with_turns
+    from terrain.cli.recordings import read_runs, with_turns, with_yaw_rates
 
     for given, option in ((shared, "--shared"), (common_noise, "--common-noise")):
         if given and kind != "velocity":
@@ -98,13 +98,15 @@ def identify_modes(
     if out.suffix != ".toml":
         raise click.UsageError(f"--out {out}: expected a name that ends in .toml")
     made = claim_file(out, is_set_of("identify-modes"))
-    runs = with_turns(read_runs(folders, span))
+    runs = read_runs(folders, span)
     modes: VelocityModes | TractionModes
     if kind == "velocity":
+        runs = with_yaw_rates(runs)
         modes = identify_velocity_modes(
             runs, shared=shared, common_noise=common_noise, show_progress=True
         )
     else:
+        runs = with_turns(runs)
         modes = identify_traction_modes(runs, paper=paper, show_progress=True)
     if isinstance(modes, TractionModes):
         _print_traction(modes)

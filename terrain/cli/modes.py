@@ -174,9 +174,11 @@ def _followed(
 ) -> "Followed":
     from odometry.modes.camera_prior import seen_terrains
     from odometry.modes.followed import followed
-    from terrain.cli.recordings import read_run, with_turns
+    from odometry.modes.velocity import VelocityModes
+    from terrain.cli.recordings import read_run, with_turns, with_yaw_rates
 
-    (run,) = with_turns([read_run(folder, span)])
+    usable = with_yaw_rates if isinstance(mode_set.modes, VelocityModes) else with_turns
+    (run,) = usable([read_run(folder, span)])
     terrains = () if seen is None else seen_terrains(seen, run)
     if seen is not None and not terrains:
         click.echo(

@@ -107,6 +107,37 @@ def with_turns(runs: "Sequence[Run]") -> "list[Run]":
     return [robot_run(_with_turns(run), ()) for run in runs]
 
 
+def with_yaw_rates(runs: "Sequence[Run]") -> "list[Run]":
+    """The same for what compares yaw rates: positions that determine no yaw stay without one.
+
+    A lever arm of `[sensors]` cannot be undone there, and such positions are not used.
+
+    Raises
+    ------
+    RunFolderError
+        See `with_turns`.
+    """
+    from odometry.effects.measurement.measured import robot_run
+
+    return [robot_run(_with_yaw_rates(run), ()) for run in runs]
+
+
+def _with_yaw_rates(run: "Run") -> "Run":
+    from odometry.errors import OdometryError
+
+    if run.yaw_rate is None:
+        return _with_turns(run)
+    try:
+        return _with_turns(run)
+    except OdometryError as error:
+        click.echo(
+            f"Note: {error}. Yaw rates were measured, and velocity modes need no yaw: no heading "
+            "confirms the gyroscope, and the forward speed is that of the treads",
+            err=True,
+        )
+        return run
+
+
 def _with_turns(run: "Run") -> "Run":
     from dataclasses import replace
 

@@ -75,3 +75,11 @@ def run_of(turn, *, track_width=1.0, size=400, labels=None, rng=None, folder="dr
     pose |= {name: pose[name] + noise[i, ::5] for i, name in enumerate(("x", "y", "yaw"))}
     tables = [Table(Path("t.csv"), c, np.arange(len(c["t"])) + 2) for c in (odometry, pose)]
     return Run(Path(folder), Robot(track_width, length=0.8), {}, *tables)
+
+
+def positions_that_determine_no_yaw(run):
+    """Columns of pose.csv without yaw: positions whose noise is larger than the drive."""
+    columns = dict(run.pose.columns)
+    for axis, name in enumerate(("x", "y")):
+        columns[name] = columns[name] + 9.0 * np.random.default_rng(axis).normal(size=len(run.pose))
+    return columns | {"yaw": np.full(len(run.pose), np.nan)}

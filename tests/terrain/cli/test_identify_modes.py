@@ -10,7 +10,7 @@ from odometry.modes.mode_pairs import Pair
 from odometry.modes.mode_set_file import read_mode_set
 from terrain.cli.identify_modes import _print_alike, identify_modes
 from tests.odometry.modes.mode_drives import asked_twists
-from tests.odometry.modes.mode_examples import run_of
+from tests.odometry.modes.mode_examples import positions_that_determine_no_yaw, run_of
 
 TURNS = {"ice": 1.0, "tar": 1.4}
 
@@ -19,12 +19,14 @@ TURNS = {"ice": 1.0, "tar": 1.4}
 def make(tmp_path):
     """A run folder of 30 s that turns by so much on a ground, with what is wanted of it."""
 
-    def write(name, turn, ground, *, gyro=True, poses=True):
+    def write(name, turn, ground, *, gyro=True, poses=True, lost=False):
         run = run_of(turn, size=1500, track_width=0.5, rng=np.random.default_rng(len(name)))
         odometry = dict(run.odometry.columns)
         if not gyro:
             del odometry["gyro_z"]
         tables = {"odometry": odometry} | ({"pose": run.pose.columns} if poses else {})
+        if lost:
+            tables["pose"] = positions_that_determine_no_yaw(run)
         settings = {"robot": {"track_width": 0.5}} | (
             {"run": {"terrain": ground}} if ground else {}
         )
@@ -66,6 +68,22 @@ def test_velocity_modes_are_shown_and_written(grounds, out):
         assert track_m == pytest.approx(1 / per_metre, abs=2e-3)
     assert "ice and tar are the most similar: driven as in these runs they take" in answer.stdout
     assert f"Wrote {out}\nNext: terrain-odometry modes RUN --models {out} --out" in answer.stdout
+
+
+def test_a_gyroscope_is_enough_for_velocity_modes(make, out):
+    """Where positions determine no yaw, treads and yaw rates are those of the same drives."""
+    lost = [make(ground, turn, ground, lost=True) for ground, turn in TURNS.items()]
+    answer = invoke(*lost, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "velocity modes need no yaw" in answer.stderr
+    for name, turn in TURNS.items():
+        assert cells(answer, name)[0] == pytest.approx(turn / 0.5, rel=0.05)
+
+
+def test_traction_modes_need_a_yaw(make, out):
+    answer = invoke(make("ice", 1.0, "ice", lost=True), "--kind", "traction", "--out", out)
+    with pytest.raises(OdometryError, match="do not determine it"):
+        raise answer.exception
 
 
 def test_modes_that_answer_alike_are_named(make, out):

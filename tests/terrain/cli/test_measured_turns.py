@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.errors import RunFolderError
+from odometry.errors import OdometryError, RunFolderError
 from odometry.table import Table
-from terrain.cli.recordings import with_turns
+from terrain.cli.recordings import with_turns, with_yaw_rates
 from tests.odometry.positions_drives import drive, emptied
 
 
@@ -45,3 +45,24 @@ def test_a_yaw_rate_of_velocity_csv_does_without_positions(capsys):
     (found,) = with_turns([replace(emptied(drive(4, duration_s=20.0)), velocity=velocity)])
     assert found.pose is None
     assert "is not used" in capsys.readouterr().err
+
+
+def test_positions_that_determine_no_yaw_stay_without_one_where_a_gyroscope_is_enough(capsys):
+    run = emptied(drive(12, noise_m=16.0, duration_s=60.0, gyroscope=True))
+    with pytest.raises(OdometryError, match="do not determine it"):
+        with_turns([run])
+    assert with_yaw_rates([run]) == [run]
+    said = capsys.readouterr().err
+    assert "Note: run: yaw was not measured" in said
+    assert "velocity modes need no yaw: no heading confirms the gyroscope" in said
+
+
+def test_a_yaw_that_positions_determine_is_found_beside_a_gyroscope_too():
+    run = emptied(drive(2, duration_s=60.0, gyroscope=True))
+    (found,) = with_yaw_rates([run])
+    np.testing.assert_array_equal(found.pose["yaw"], with_turns([run])[0].pose["yaw"])
+
+
+def test_without_a_yaw_rate_it_is_refused_there_too():
+    with pytest.raises(RunFolderError, match="how the robot turned is not known"):
+        with_yaw_rates([emptied(drive(3, duration_s=20.0))])

@@ -13,7 +13,12 @@ from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
 from odometry.modes.mode_set_file import write_mode_set
 from terrain.cli.modes import modes
-from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
+from tests.odometry.modes.mode_examples import (
+    positions_that_determine_no_yaw,
+    run_of,
+    traction_set,
+    velocity_set,
+)
 
 HALVES = np.repeat(["ice", "tar"], 300)
 SEEN = "t,label,confidence,distance_ahead\n1,ice,0.9,0.5\n6,tar,0.9,0.5\n"
@@ -23,7 +28,7 @@ SEEN = "t,label,confidence,distance_ahead\n1,ice,0.9,0.5\n6,tar,0.9,0.5\n"
 def make(tmp_path):
     """A run folder, half on ice and half on tar as its truth says."""
 
-    def write(name, *, gyro=True, poses=True, folder=tmp_path):
+    def write(name, *, gyro=True, poses=True, lost=False, folder=tmp_path):
         run = run_of(np.where(HALVES == "ice", 1.0, 2.0), size=len(HALVES))
         odometry = dict(run.odometry.columns)
         if not gyro:
@@ -32,6 +37,7 @@ def make(tmp_path):
         truth = {"t": odometry["t"], "x": still, "y": still, "yaw": still, "terrain": HALVES}
         tables = {"odometry": odometry, "truth": truth}
         tables |= {"pose": run.pose.columns} if poses else {}
+        tables |= {"pose": positions_that_determine_no_yaw(run)} if lost else {}
         write_run_folder(folder / name, {"robot": {"track_width": 1.0, "length": 0.8}}, tables)
         return str(folder / name)
 
@@ -136,6 +142,19 @@ def test_what_no_pose_can_check_is_said(make, models, tmp_path):
     assert "Not checked: the scale of the gyroscope, without measured headings" in without.stdout
     assert "Not checked: the distance, without measured positions" in without.stdout
     assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 3
+
+
+def test_positions_that_determine_no_yaw_leave_the_answers_to_the_gyroscope(make, models, tmp_path):
+    contents = []
+    for name, tables in (("alone", {"poses": False}), ("drive", {"lost": True})):
+        answer = invoke(make(name, **tables), "--models", models, "--out", tmp_path / "out")
+        assert answer.exit_code == 0, answer.output
+        contents.append(json.loads((tmp_path / "out" / "result.json").read_text()))
+    assert "velocity modes need no yaw" in answer.stderr
+    without, lost = (one["motion"]["shares_of_time"] for one in contents)
+    assert lost == without
+    assert {"ice", "tar"} <= set(lost)
+    assert any("the scale of the gyroscope" in said for said in contents[1]["not_checked"])
 
 
 def test_a_sight_that_lies_is_reported(with_sight):
