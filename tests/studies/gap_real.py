@@ -43,7 +43,7 @@ from odometry.gap.show.words import parameter_words
 from odometry.io.files import atomic_write
 from odometry.report.gap_page import write_gap_report
 from tests.studies.gap_real_cases import Case, controls, real, recordings, withheld
-from tests.studies.gap_real_changes import changed, count_of_changes
+from tests.studies.gap_real_changes import changed, count_of_changes, made_m
 
 CONFIG = GapConfig(horizon_s=1.5)
 SAID = 3  # parameters of an effect that are printed
@@ -55,6 +55,7 @@ COLUMNS = (
         "after",
         "floor",
         "ratio",
+        "made",
         "closed",
         "chi_squared",
         "latency_s",
@@ -107,6 +108,8 @@ def study(case: Case, out: Path) -> dict[str, str]:
     if case.kind not in ("control", "changed"):
         write_gap(result, out / case.name)
         write_gap_report(result, out / case.name)
+    if case.kind == "changed":
+        row["made"] = f"{made_m(result, case.expected) / result.holdout.noise_floor.value:.2f}"
     return row | said(result)
 
 
