@@ -54,8 +54,20 @@ def rounding_step_m(stamps_s: FloatArray, positions: FloatArray) -> float:
 def steps_m(stamps_s: FloatArray, positions: FloatArray) -> FloatArray:
     """Steps (2,) of x and y of which all positions (M, 2) are multiples; else of `rounding_step_m`.
 
+    Zeros where there are none.
+    """
+    exact = exact_steps_m(positions)
+    if exact.any() or len(positions) <= FEWEST_CHANGES:
+        return exact
+    new = np.append(True, np.diff(positions, axis=0).any(axis=1))
+    return np.full(2, rounding_step_m(stamps_s[new], positions[new]))
+
+
+def exact_steps_m(positions: FloatArray) -> FloatArray:
+    """Steps (2,) of x and y of which all positions (M, 2) are multiples; zeros without.
+
     Where values are repeated in most rows, a coordinate that hardly changes has the step of the
-    other one. Zeros where there are none.
+    other one.
     """
     if len(positions) <= FEWEST_CHANGES:
         return np.zeros(2)
@@ -69,8 +81,7 @@ def steps_m(stamps_s: FloatArray, positions: FloatArray) -> FloatArray:
     known = [step for step in exact if step is not None]
     if known and min(known) > 0 and (len(known) == 2 or repeated.all()):
         return np.array([max(known) if step is None else step for step in exact])
-    new = np.append(True, changes.any(axis=1))
-    return np.full(2, rounding_step_m(stamps_s[new], positions[new]))
+    return np.zeros(2)
 
 
 def _multiples_of(changes: FloatArray, fewest: int) -> float | None:

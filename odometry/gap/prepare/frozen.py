@@ -17,6 +17,7 @@ from odometry.windows.robust import NORMAL
 
 NEIGHBOURS = 7  # poses of a median: up to three off in a row do not move it
 LEAST_SIGMA_M = 1e-3  # of a reference
+DIAGONAL = 2**0.5  # of a grid, in its steps: rounding moves no place farther from its neighbours
 NINE_IN_TEN = 2.146  # standard deviations within which nine in ten of normal places lie
 DELAYS_S = np.arange(-10, 11) * 0.05  # of the treads against the poses, either way
 
@@ -47,7 +48,10 @@ class Isolated:
 
 
 def isolated(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> Isolated:
-    """Poses that are far off their neighbours, of a run as the calibration drives it."""
+    """Poses that are far off their neighbours, of a run as the calibration drives it.
+
+    Farther than to the next place of the grid to which positions were rounded.
+    """
     base = calibration.base
     distances_m, sigma_m = off_neighbours(drift_of(scene, base))
     if (distances_m > config.outlier_sigmas * sigma_m).any():
@@ -55,7 +59,8 @@ def isolated(scene: DenseWindows, calibration: Calibration, config: GapConfig) -
             late = replace(base, latency_s=base.latency_s + float(delay_s))
             distances_m = np.minimum(distances_m, off_neighbours(drift_of(scene, late))[0])
     sigmas = distances_m / sigma_m
-    return Isolated(sigmas > config.outlier_sigmas, distances_m, scene.pose_s, sigmas)
+    off = (sigmas > config.outlier_sigmas) & (distances_m > DIAGONAL * scene.rounded_m)
+    return Isolated(off, distances_m, scene.pose_s, sigmas)
 
 
 def drift_of(scene: DenseWindows, base: Base) -> FloatArray:

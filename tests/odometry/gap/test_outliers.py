@@ -68,6 +68,11 @@ def test_what_the_calibration_has_as_well_is_no_finding(jumping, known):
     assert outliers_of([jumping], [jumping], [jumping], known, CONFIG) is None
 
 
+def test_the_next_place_of_a_grid_is_no_outlier(jumping, known):
+    assert isolated(jumping, known, CONFIG).off.sum() == len(OFF)
+    assert not isolated(replace(jumping, rounded_m=0.8), known, CONFIG).off.any()
+
+
 @pytest.mark.parametrize(
     "change",
     [

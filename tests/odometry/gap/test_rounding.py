@@ -42,6 +42,11 @@ def test_rounding_is_the_gap(make_scene, known, step_m):
     assert floor.value == pytest.approx(gap.value, rel=0.15)
 
 
+def test_a_coarse_step_is_found_whole(make_scene):
+    """Around few positions the robot moved by two of them, and by more of a part of them."""
+    assert rounded(make_scene(3, duration_s=60.0), 1.0).rounded_m == pytest.approx(1.0)
+
+
 def test_positions_as_measured_are_not(make_scene, known):
     scene = make_scene(3, duration_s=120.0)
     assert scene_of(scene.run, CONFIG).rounded_m == 0.0
