@@ -211,10 +211,13 @@ class MeasurementEffect(Effect):
     ----------
     by_pose : bool
         Whether each pose is reported by itself, whatever went before and comes after.
+    always : tuple of float
+        Its values where a reference has it in all runs; none of what comes up.
     """
 
     acts_on = "measurement"
     by_pose: ClassVar[bool] = True
+    always: ClassVar[tuple[float, ...]] = ()
 
     def delay_s(
         self, values: FloatArray, stamps_s: FloatArray, run: int | None = None

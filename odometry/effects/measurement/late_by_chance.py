@@ -32,6 +32,7 @@ class LateByChance(MeasurementEffect):
     needs = "poses whose stamps are uneven"
     of_reference = True
     essential = ("share",)
+    always = (1.0, 0.0)
     alike: ClassVar[Mapping[str, str]] = {"command_delay": BY_GYROSCOPE}
 
     @classmethod

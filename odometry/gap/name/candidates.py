@@ -7,15 +7,23 @@ from odometry.effects.interface.base import Effect
 from odometry.effects.interface.recorded import Recorded, labels_of
 from odometry.effects.measurement.reference_fault import FEW_HEADINGS
 from odometry.gap.fit.own_moments import observed_s
+from odometry.gap.name.in_calibration import in_calibration
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import reported_of
 from odometry.windows.dense import DenseWindows
 
 
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:
-    """Effects of the catalogue that the measured runs could determine, in its order."""
+    """Effects of the catalogue that the measured runs could determine, in its order.
+
+    Without those that the calibration runs have as well.
+    """
     offered = _of_catalogue(scenes, calibration)
-    return tuple(e for e in offered if has_data_for(e, scenes, calibration))
+    return tuple(
+        e
+        for e in offered
+        if has_data_for(e, scenes, calibration) and not in_calibration(e, scenes, calibration)
+    )
 
 
 def effects_of_one_heading(

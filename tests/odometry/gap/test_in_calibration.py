@@ -1,0 +1,73 @@
+"""What the calibration runs have as well is not offered as missing on the measured ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.measurement.late_by_chance import LateByChance
+from odometry.gap.config import GapConfig
+from odometry.gap.name.candidates import quick_effects
+from odometry.gap.name.in_calibration import in_calibration
+from odometry.gap.prepare.scenes import scene_of
+
+CONFIG = GapConfig()
+LATE = LateByChance()
+
+
+def by_chance(scene, most_s, seed=5):
+    """The same run with poses stamped when they arrived, by up to so much later."""
+    pose = scene.run.pose
+    late_s = most_s * np.random.default_rng(seed).random(len(pose))
+    stamps_s = np.maximum.accumulate(pose.stamps_s + late_s) + 1e-6 * np.arange(len(pose))
+    run = replace(scene.run, pose=replace(pose, columns={**pose.columns, "t": stamps_s}))
+    return scene_of(run, CONFIG)
+
+
+def thinned(scene):
+    """The same run with half of its poses, at random."""
+    chosen = np.random.default_rng(7).random(len(scene.run.pose)) < 0.5
+    return scene_of(replace(scene.run, pose=scene.run.pose.rows(np.flatnonzero(chosen))), CONFIG)
+
+
+@pytest.fixture(scope="module")
+def measured(make_scene):
+    return by_chance(make_scene(3, duration_s=60.0), 0.09)
+
+
+@pytest.fixture(scope="module")
+def known_late(known):
+    """A calibration whose poses are stamped so, too."""
+    kept = tuple((base, by_chance(scene, 0.09)) for base, scene in known.held_back)
+    return replace(known, held_back=kept)
+
+
+def forms(scenes, calibration):
+    return {effect.form for effect in quick_effects(scenes, calibration)}
+
+
+def test_late_stamps_are_missing_where_the_calibration_has_none(measured, known):
+    assert not in_calibration(LATE, [measured], known)
+    assert LATE.form in forms([measured], known)
+
+
+def test_they_are_not_where_it_has_them_as_well(measured, known_late):
+    assert in_calibration(LATE, [measured], known_late)
+    assert LATE.form not in forms([measured], known_late)
+
+
+def test_stamps_that_are_off_by_much_more_are(known, measured):
+    kept = tuple((base, by_chance(scene, 0.03)) for base, scene in known.held_back)
+    assert not in_calibration(LATE, [measured], replace(known, held_back=kept))
+
+
+def test_poses_that_were_measured_unevenly_are_not_late(known, make_scene):
+    """Uneven stamps that are right gain nothing by even ones."""
+    kept = tuple((base, thinned(scene)) for base, scene in known.held_back)
+    measured = thinned(make_scene(3, duration_s=60.0))
+    assert not in_calibration(LATE, [measured], replace(known, held_back=kept))
+
+
+def test_other_effects_may_always_be_missing(measured, known_late):
+    assert not in_calibration(WheelScale(), [measured], known_late)
