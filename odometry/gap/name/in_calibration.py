@@ -27,7 +27,7 @@ def in_calibration(
     Each stretch of these has a base identified on the others. Not where the stamps of the measured
     runs (`scenes`) are off by much more.
     """
-    if not (isinstance(effect, MeasurementEffect) and effect.always):
+    if not (isinstance(effect, MeasurementEffect) and effect.always and calibration.held_back):
         return False
     added = Added(effect, np.array(effect.always))
     known = [scene for _, scene in calibration.held_back]
