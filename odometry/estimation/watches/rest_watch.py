@@ -81,7 +81,8 @@ def watched(
     most = max(MOVED_M, SIGMAS * sigma_m), max(MOVED_RAD, SIGMAS * sigma_rad)
     place_m = np.mean([each[:2] for each in watch.poses], axis=0)
     moved_m = math.hypot(*(pose[:2] - place_m))
-    turn_rad = abs(wrap_one(pose[2] - watch.poses[-1][2])) if pose[2] == pose[2] else 0.0
+    yaws_rad = [each[2] for each in (*watch.poses, pose) if not math.isnan(each[2])]
+    turn_rad = 0.0 if math.isnan(pose[2]) else abs(wrap_one(pose[2] - yaws_rad[-2:][0]))
     if moved_m <= most[0] and not turn_rad > most[1]:
         return watch._replace(away=()), False
     near_m = max(most[0], moved_m / 2)

@@ -45,6 +45,30 @@ def test_a_robot_that_stands_is_left_alone(driven, rng):
     assert estimates[GO + 1].watch.rest is None
 
 
+def some_without_yaw(poses, rng):
+    """Half of the yaws is not measured, as where a receiver of two antennas has no fix."""
+    poses[rng.random(len(poses)) < 0.5, 2] = np.nan
+    return poses
+
+
+def test_a_robot_that_stands_may_have_poses_without_yaw(driven, rng):
+    poses = some_without_yaw(noisy_poses(driven, rng), rng)
+    events = events_of(estimates_of(frames_of(driven, poses=poses)))
+    assert "moved_at_rest" not in [event.kind for event in events]
+
+
+def test_poses_without_yaw_do_not_hide_that_a_robot_is_turned():
+    rng, cov = np.random.default_rng(2), np.diag([1e-4, 1e-4, 1e-4])
+    poses = some_without_yaw(rng.normal(0, 0.01, (40, 3)) + np.array([2.0, 1.0, 0.0]), rng)
+    poses[20:, 2] += 0.8
+    watch, moved = RestWatch(0.0, (np.zeros(9), np.eye(9)), NoiseScale()), []
+    for place, pose in enumerate(poses):
+        watch, now = watched(watch, pose, 2.0 + 0.1 * place, cov)
+        moved.append(now)
+    assert not any(moved[:20])
+    assert any(moved[20:])
+
+
 @pytest.mark.parametrize("pushed_m", [0.4, 1.0, 3.0])
 def test_a_push_is_followed_and_flagged(driven, rng, pushed_m):
     estimates, poses = estimated(driven, rng, pushed_m)
