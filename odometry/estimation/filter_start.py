@@ -161,23 +161,29 @@ def searched(
     if placed:
         course = course.with_position(reckoned_m, pose[:2])
     position_sigma_m = math.sqrt(float(pose_covariance[0, 0]))
+    heading: Heading | None
+    at_start: Heading | None
     if math.isfinite(pose[YAW]):
-        heading: Heading | None = Heading(
+        heading = Heading(
             wrap_one(float(pose[YAW] - belief[0][YAW])),
             math.sqrt(float(pose_covariance[YAW, YAW])),
             course.reckoned_m,
             course.measured_m,
             position_sigma_m,
         )
+        # what dead reckoning turned since the start is known less well than the yaw now
+        turned_rad = math.sqrt(max(float(belief[1][YAW, YAW]) - UNKNOWN_YAW_VARIANCE, 0.0))
+        at_start = heading._replace(sigma_rad=math.hypot(heading.sigma_rad, turned_rad))
         how = "a pose with a yaw came"
     else:
         heading = course.heading(position_sigma_m, by_gyroscope=math.isfinite(frame.yaw_rate_rad_s))
         heading = heading and _with_drift(heading, belief, frame.stamp_s - course.begin_s)
+        at_start = heading
         how = f"by the course of {course.count} positions"
-    if heading is not None:
+    if heading is not None and at_start is not None:
         yaw = float(belief[0][YAW])
         turned = _turned(belief, heading, np.append(reckoned_m, yaw), lever_m)
-        return Searched(turned, None, (_event(course, heading, frame, how),))
+        return Searched(turned, None, (_event(course, at_start, frame, how),))
     if course.is_over:
         course = course.anew(frame.stamp_s)
     return Searched(_at(belief, pose[:2], pose_covariance, lever_m) if placed else belief, course)

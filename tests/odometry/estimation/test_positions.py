@@ -77,6 +77,24 @@ def test_a_pose_with_yaw_ends_the_search(rng):
     assert distance(estimates[-1], driven) < 0.05
 
 
+@pytest.mark.parametrize("with_gyroscope", [True, False])
+def test_a_yaw_that_comes_late_says_less_of_the_start(with_gyroscope, rng):
+    """Meanwhile the robot turned on the spot, by treads whose ICRs are hardly known."""
+    driven = drive(20.0, speeds_of=lambda _: (-0.2, 0.2), start=START)
+    poses = noisy_poses(driven, rng)
+    poses[:80, 2] = np.nan
+    rates = driven.yaw_rates_rad_s if with_gyroscope else None
+    estimates = estimates_of(frames_of(driven, poses=poses, yaw_rates=rates))
+    event = next(event for e in estimates for event in e.events)
+    yaw, sigma = event.values
+    assert "a pose with a yaw came" in event.text
+    assert abs(np.angle(np.exp(1j * (yaw - START[2])))) < 3 * sigma
+    assert (sigma < 0.2) == with_gyroscope  # 8 s with its bias
+    found = estimates[80]
+    assert found.covariance[2, 2] < 0.1**2
+    assert abs(np.angle(np.exp(1j * (found.mean[2] - driven.poses[80, 2])))) < 0.1
+
+
 def test_an_antenna_off_the_centre_turns_with_the_robot(rng):
     """Positions of a point 0.8 m ahead and 0.3 m to the left; without it x_icr would be off."""
     lever = np.array([0.8, 0.3])
