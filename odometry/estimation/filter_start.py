@@ -162,7 +162,7 @@ def searched(
         course = course.with_position(reckoned_m, pose[:2])
     position_sigma_m = math.sqrt(float(pose_covariance[0, 0]))
     heading: Heading | None
-    at_start: Heading | None
+    turned_rad = 0.0  # deviation of what dead reckoning turned since the start, beside the heading
     if math.isfinite(pose[YAW]):
         heading = Heading(
             wrap_one(float(pose[YAW] - belief[0][YAW])),
@@ -171,17 +171,15 @@ def searched(
             course.measured_m,
             position_sigma_m,
         )
-        # what dead reckoning turned since the start is known less well than the yaw now
         turned_rad = math.sqrt(max(float(belief[1][YAW, YAW]) - UNKNOWN_YAW_VARIANCE, 0.0))
-        at_start = heading._replace(sigma_rad=math.hypot(heading.sigma_rad, turned_rad))
         how = "a pose with a yaw came"
     else:
         heading = course.heading(position_sigma_m, by_gyroscope=math.isfinite(frame.yaw_rate_rad_s))
         heading = heading and _with_drift(heading, belief, frame.stamp_s - course.begin_s)
-        at_start = heading
         how = f"by the course of {course.count} positions"
-    if heading is not None and at_start is not None:
+    if heading is not None:
         yaw = float(belief[0][YAW])
+        at_start = heading._replace(sigma_rad=math.hypot(heading.sigma_rad, turned_rad))
         turned = _turned(belief, heading, np.append(reckoned_m, yaw), lever_m)
         return Searched(turned, None, (_event(course, at_start, frame, how),))
     if course.is_over:

@@ -125,11 +125,11 @@ def with_yaw_rates(runs: "Sequence[Run]") -> "list[Run]":
 def _with_yaw_rates(run: "Run") -> "Run":
     from odometry.errors import OdometryError
 
-    if run.yaw_rate is None:
-        return _with_turns(run)
     try:
         return _with_turns(run)
     except OdometryError as error:
+        if run.yaw_rate is None:
+            raise
         click.echo(
             f"Note: {error}. Yaw rates were measured, and velocity modes need no yaw: no heading "
             "confirms the gyroscope, and the forward speed is that of the treads",

@@ -19,8 +19,9 @@ LEAST_OF_EACH = 10  # windows in which a tread runs backwards
 # and a constant at slow speeds 0.71; 0.04 to 0.5 where there was such a change in simulated ones.
 HALF, EXPLAINED = 0.5, 0.95
 ALONE = 0.7  # of what the same change of both sides, or of a bias of the gyroscope, leaves
-# Of what it leaves, that scales of each part of the drive leave at the most where terrain changes
-# them: 0.1 to 0.5 of drives across terrains, of which a robot reversed on one or came back to one
+# Where scales of each part of the drive leave less than this share of what one change leaves, the
+# scales go with the terrain. They left 0.1 to 0.5 of it on drives across terrains that reversed on
+# one of them, or came back to one.
 FAR_BETTER = 0.5
 CHANGED = 0.1  # of the scale of that side, that changes at least
 LEAST_SPEED = 0.02  # of the ordinary fastest speed, of the constant
