@@ -106,6 +106,7 @@ ROOMS_IN_ORDER = {
         *("settings", "unexplained"),
     ),
     "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
+    "terrain.cli": ("texts", "verbs"),
     "terrain": ("camera", "region", "image_labels", "switch", "sources", "result", "live"),
 }
 

@@ -94,7 +94,7 @@ def test_modules_are_imported_by_names_of_the_program():
         "odometry/bags/damage.py",
         "odometry/bags/messages.py",
         "odometry/installed.py",
-        "terrain/cli/export.py",
+        "terrain/cli/verbs/export.py",
         "terrain/cli/main.py",
     }
 

@@ -1,1 +1,1 @@
-"""The command `terrain-odometry`, one file a verb."""
+"""The command `terrain-odometry`: its entry point, and what several verbs use."""

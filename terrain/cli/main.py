@@ -52,7 +52,7 @@ class LazyGroup(click.Group):
             return None
         name = cmd_name.replace("-", "_")
         name += "_" if iskeyword(name) else ""
-        module = importlib.import_module(f"terrain.cli.{name}")
+        module = importlib.import_module(f"terrain.cli.verbs.{name}")
         command: click.Command = getattr(module, name)
         return command
 

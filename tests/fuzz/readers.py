@@ -22,7 +22,7 @@ from odometry.windows.windows import windows_of
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.photographs.patches import find_photos, stated_metres_per_pixel
-from terrain.cli.evaluate import _rows
+from terrain.cli.verbs.evaluate import _rows
 from terrain.config import Config
 from terrain.images import read_image
 from terrain.main_job import run_odometry

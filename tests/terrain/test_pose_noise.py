@@ -9,8 +9,8 @@ import pytest
 from odometry.checks.recording import check_recording
 from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.pose_noise import with_pose_noise
-from terrain.cli.compare import compare
-from terrain.cli.identify import identify
+from terrain.cli.verbs.compare import compare
+from terrain.cli.verbs.identify import identify
 from terrain.main_job import run_odometry
 from tests.odometry.checks.drives import drive
 

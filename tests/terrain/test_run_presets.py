@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import ConfigError
 from odometry.parameters import ParameterSet, TerrainParameters
 from terrain.classification.classifier import TerrainClassifier
-from terrain.cli import run as run_verb
+from terrain.cli.verbs import run as run_verb
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.run_presets import RUN_PRESETS, run_preset

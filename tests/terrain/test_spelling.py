@@ -4,7 +4,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.parameters import ParameterSet
-from terrain.cli.label import label
+from terrain.cli.verbs.label import label
 from terrain.errors import PatchError
 from terrain.spelling import alike_names, plain_name
 from terrain.terrain_names import name_notes

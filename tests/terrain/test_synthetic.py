@@ -17,7 +17,7 @@ from odometry.run import Run
 from odometry.simulation.ground import GroundMap
 from terrain.camera.camera import Camera
 from terrain.classification.photographs.patches import find_photos
-from terrain.cli.synthesise import synthesise as command
+from terrain.cli.verbs.synthesise import synthesise as command
 from terrain.errors import SynthesisError
 from terrain.images import read_image
 from terrain.synthesis.config import default_camera, default_robot, read_camera, read_robot

@@ -19,7 +19,7 @@ from odometry.outputs.provenance import Made
 from odometry.parameters import read_parameters
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.model_file import is_model
-from terrain.cli.evaluate import evaluate
+from terrain.cli.verbs.evaluate import evaluate
 from terrain.errors import ResultError
 from terrain.results import read_errors
 

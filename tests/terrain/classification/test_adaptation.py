@@ -13,7 +13,7 @@ from terrain.classification.neighbours.validation import Samples
 from terrain.classification.old_samples import SamplesBesideOld
 from terrain.classification.photographs.patches import LabelledPatches
 from terrain.classification.photographs.trained_on import TrainedOn
-from terrain.cli.train import train
+from terrain.cli.verbs.train import train
 from terrain.errors import ModelFileError, PatchError
 
 

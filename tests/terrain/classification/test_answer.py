@@ -18,7 +18,7 @@ from terrain.classification.answer import (
 )
 from terrain.classification.confidence import AnswerConfidence
 from terrain.classification.likeness.likeness import Likeness
-from terrain.cli.classify import classify
+from terrain.cli.verbs.classify import classify
 from tests.terrain.classification.test_no_ground import photographs
 
 LIKE, UNLIKE = (Likeness(20, 0.5, 0.5, (), beyond=beyond) for beyond in (0.9, 1.1))

@@ -15,7 +15,7 @@ from odometry.errors import ConfigError
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features.network_features import Network, NetworkFeatures
 from terrain.classification.model_file import read_model, write_model
-from terrain.cli.train import train
+from terrain.cli.verbs.train import train
 from terrain.errors import ModelFileError, PatchError
 from terrain.main_job import run_odometry
 from tests.terrain.classification.features.onnx_bytes import tiny_features, tiny_network

@@ -21,7 +21,7 @@ from terrain.classification.no_ground import (
     no_ground_note,
 )
 from terrain.classification.own_statistics import OwnStatisticsClassifier
-from terrain.cli.classify import classify
+from terrain.cli.verbs.classify import classify
 from terrain.errors import ModelFileError
 from terrain.image_labels.image_label import answered
 

@@ -15,7 +15,7 @@ from terrain.classification.own_statistics import (
     own_weight,
     used_as,
 )
-from terrain.cli.classify import classify
+from terrain.cli.verbs.classify import classify
 from terrain.errors import ImageError
 
 SIZE = 32

@@ -14,8 +14,8 @@ from click.testing import CliRunner
 from odometry.outputs.manifest import read_manifest
 from odometry.parameters import read_parameters
 from terrain.batch import job as job_module
-from terrain.cli.batch import batch
-from terrain.cli.run import run
+from terrain.cli.verbs.batch import batch
+from terrain.cli.verbs.run import run
 
 NAMES = ["a", "b", "c"]
 

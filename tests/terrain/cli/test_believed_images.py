@@ -11,8 +11,8 @@ from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.run import Run
 from terrain.believed_images import ELSEWHERE, OF_STRETCHES, run_to_label
 from terrain.classification.classifier import TerrainClassifier
-from terrain.cli.batch import batch
-from terrain.cli.run import run
+from terrain.cli.verbs.batch import batch
+from terrain.cli.verbs.run import run
 from terrain.config import Config
 from terrain.errors import PatchError
 from terrain.main_job import run_odometry

@@ -13,7 +13,7 @@ from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_sources import MountSource
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
-from terrain.cli.camera import _write
+from terrain.cli.verbs.camera import _write
 from terrain.errors import CalibrationError
 from tests.terrain.calibration.rendered import marked
 from tests.terrain.cli.verb_calls import verb
@@ -144,7 +144,7 @@ def test_what_the_check_says_of_the_images_is_said_of_a_mount_from_motion(
     verb, run, tmp_path, monkeypatch
 ):
     late = Finding("images_late", Level.WARNING, "images are late", "A clock", "Look")
-    monkeypatch.setattr("terrain.cli.camera_text.image_motion", lambda *_: ([late], ""))
+    monkeypatch.setattr("terrain.cli.texts.camera_text.image_motion", lambda *_: ([late], ""))
     answer = verb("camera", run, "--out", tmp_path / "out", "--from-motion")
     assert "Warning: images are late. A clock. Look" in answer.output
 

@@ -39,7 +39,7 @@ def robot(request, shared_data, tmp_path):
 @pytest.fixture
 def undrawn_husky(shared_data, tmp_path, monkeypatch, no_report):  # noqa: ARG001
     """Without pictures, which take most of the time."""
-    monkeypatch.setattr("terrain.cli.camera_outputs.write_ground_figures", lambda *_: [])
+    monkeypatch.setattr("terrain.cli.texts.camera_outputs.write_ground_figures", lambda *_: [])
     return run_of("husky", shared_data, tmp_path)
 
 

@@ -11,8 +11,8 @@ from odometry.outputs.manifest import NAME, read_manifest
 from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Made
 from odometry.outputs.written_tables import changes_of
-from terrain.cli.evaluate import evaluate
-from terrain.cli.export import export
+from terrain.cli.verbs.evaluate import evaluate
+from terrain.cli.verbs.export import export
 from terrain.main_job import run_odometry
 from terrain.results import write_run
 

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
-from terrain.cli.check import check, next_step
+from terrain.cli.verbs.check import check, next_step
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from odometry.errors import OutputError
 from odometry.io.run_folder import write_run_folder
-from terrain.cli.compare import compare
+from terrain.cli.verbs.compare import compare
 
 
 def make(folder, seed, terrain="grass"):

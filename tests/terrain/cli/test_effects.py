@@ -9,9 +9,9 @@ from click.testing import CliRunner
 
 from odometry.errors import ParameterError
 from odometry.parameters import read_parameters
-from terrain.cli.compare import compare
-from terrain.cli.identify import identify
-from terrain.cli.run import run
+from terrain.cli.verbs.compare import compare
+from terrain.cli.verbs.identify import identify
+from terrain.cli.verbs.run import run
 
 ARM = (0.25, -0.1)
 TRUE = """

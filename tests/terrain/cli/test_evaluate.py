@@ -5,7 +5,7 @@ import json
 import pytest
 from click.testing import CliRunner
 
-from terrain.cli.evaluate import evaluate
+from terrain.cli.verbs.evaluate import evaluate
 
 
 @pytest.fixture

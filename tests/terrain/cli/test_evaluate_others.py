@@ -12,7 +12,7 @@ from odometry.io.trajectory_files import read_trajectory, to_optical, write_traj
 from odometry.io.tum import write_spatial_tum
 from odometry.run import Run
 from odometry.trajectory import SpatialTrajectory, Trajectory
-from terrain.cli.evaluate import evaluate
+from terrain.cli.verbs.evaluate import evaluate
 from terrain.main_job import run_odometry
 from terrain.other_odometry.other_stamps import late_by_s
 from terrain.results import write_results

@@ -8,8 +8,8 @@ from click.testing import CliRunner
 
 from odometry.io.trajectory_files import FORMATS as TRAJECTORY_FORMATS
 from odometry.outputs.own_names import has_own_name
-from terrain.cli.export import FORMATS, export
-from terrain.cli.identify import identify
+from terrain.cli.verbs.export import FORMATS, export
+from terrain.cli.verbs.identify import identify
 from terrain.results import write_results
 
 SET = """[vehicle]

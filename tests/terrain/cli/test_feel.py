@@ -9,8 +9,8 @@ from click.testing import CliRunner
 
 from odometry.feel.model_file import read_feel_model
 from odometry.io.run_folder import write_run_folder
-from terrain.cli.feel import feel
-from terrain.cli.identify_feel import identify_feel
+from terrain.cli.verbs.feel import feel
+from terrain.cli.verbs.identify_feel import identify_feel
 from tests.odometry.feel.feel_drives import drive
 
 

@@ -31,7 +31,7 @@ from odometry.outputs.output_folder import OutputFolder
 STOP = "os.kill(os.getpid(), signal.{signal})"
 WHILE = {
     "working": """
-import terrain.cli.simulate
+import terrain.cli.verbs.simulate
 def stop(*a, **k):
     {stop}
 import odometry.simulation.contact.drive as drive

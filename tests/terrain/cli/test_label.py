@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.photographs.patches import find_photos
-from terrain.cli.label import label
-from terrain.cli.train import train
+from terrain.cli.verbs.label import label
+from terrain.cli.verbs.train import train
 from terrain.images import read_image
 
 SPANS = ["--span", "0:3.2=gravel", "--span", "3.2:6=boards", "--span", "6:60=gravel"]

@@ -12,7 +12,7 @@ import odometry
 from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
 from odometry.modes.mode_set_file import write_mode_set
-from terrain.cli.modes import modes
+from terrain.cli.verbs.modes import modes
 from tests.odometry.modes.mode_examples import (
     positions_that_determine_no_yaw,
     run_of,

@@ -12,10 +12,10 @@ from odometry.errors import OdometryError
 from odometry.installed import shipped_data
 from odometry.outputs.manifest import Manifest, read_manifest
 from odometry.parameters import read_parameters
-from terrain.cli.evaluate import evaluate
-from terrain.cli.identify import identify
-from terrain.cli.run import run
-from terrain.cli.train import train
+from terrain.cli.verbs.evaluate import evaluate
+from terrain.cli.verbs.identify import identify
+from terrain.cli.verbs.run import run
+from terrain.cli.verbs.train import train
 
 
 def invoke(verb, *arguments):

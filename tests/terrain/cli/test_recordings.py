@@ -15,7 +15,7 @@ from odometry.outputs.provenance import Made
 from odometry.run_span import Span
 from terrain.cli.outputs import comment
 from terrain.cli.recordings import CHECKS, read_runs
-from terrain.cli.run import run
+from terrain.cli.verbs.run import run
 
 VERBS = ("run", "batch", "identify", "compare", "gap", "identify_modes", "modes")
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from terrain.classification.confidence import AnswerConfidence
-from terrain.cli.run import run
+from terrain.cli.verbs.run import run
 
 
 def invoke(*arguments):

@@ -8,7 +8,7 @@ from odometry.errors import OdometryError
 from odometry.installed import shipped_data
 from odometry.run import Run
 from odometry.simulation.courses import COURSE_NAMES
-from terrain.cli.simulate import VEHICLES, simulate
+from terrain.cli.verbs.simulate import VEHICLES, simulate
 
 PIONEER = shipped_data() / "vehicles" / "pioneer_like.toml"
 

@@ -10,9 +10,9 @@ from joblib.externals.loky import get_reusable_executor
 
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.neighbours.validation import CrossValidation
-from terrain.cli.classify import classify
-from terrain.cli.train import train
-from terrain.cli.train_text import calibration_words
+from terrain.cli.texts.train_text import calibration_words
+from terrain.cli.verbs.classify import classify
+from terrain.cli.verbs.train import train
 from terrain.images import read_image
 
 

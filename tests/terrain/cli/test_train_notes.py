@@ -8,8 +8,8 @@ import numpy as np
 from terrain.classification.answer import COLOURLESS
 from terrain.classification.no_ground import SKY
 from terrain.classification.photographs.patches import find_photos, load_patches
-from terrain.cli.labelled_images import print_unnamed
-from terrain.cli.train_notes import notes
+from terrain.cli.texts.labelled_images import print_unnamed
+from terrain.cli.texts.train_notes import notes
 
 
 def said(folder, noticed_share=None, **options):

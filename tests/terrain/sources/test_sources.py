@@ -12,7 +12,7 @@ from odometry.errors import ConfigError, RunFolderError
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain
 from odometry.run import UNKNOWN
-from terrain.cli import run as run_verb
+from terrain.cli.verbs import run as run_verb
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report
 from terrain.results import write_results

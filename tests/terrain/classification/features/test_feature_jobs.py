@@ -19,7 +19,7 @@ from terrain.classification.features.feature_jobs import (
 from terrain.classification.features.features import feature_matrix
 from terrain.classification.features.network_features import Network, NetworkFeatures
 from terrain.classification.presets import PRESETS
-from terrain.cli.train import train
+from terrain.cli.verbs.train import train
 from terrain.errors import BatchError
 from tests.terrain.classification.features.onnx_bytes import tiny_network
 from tests.terrain.dask_processes import started_scheduler, started_workers

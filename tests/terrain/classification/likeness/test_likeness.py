@@ -13,7 +13,7 @@ from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.likeness.look import look_of
 from terrain.classification.likeness.training_look import TrainingLook
 from terrain.classification.model_file import read_model, write_model
-from terrain.cli.classify import classify
+from terrain.cli.verbs.classify import classify
 from terrain.errors import ModelFileError
 from terrain.image_labels.image_labeller import WORTH_OF_UNLIKE, RunLikeness
 

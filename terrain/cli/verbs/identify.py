@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from terrain.cli.identification_outputs import (
+from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
+from terrain.cli.recordings import span_options
+from terrain.cli.run_folders import run_folders
+from terrain.cli.texts.identification_outputs import (
     claimed,
     draw,
     print_identification,
@@ -15,9 +18,6 @@ from terrain.cli.identification_outputs import (
     warned,
     write_ros,
 )
-from terrain.cli.options import MODEL_NAMES, OUTPUT, assignments, require_model, window_options
-from terrain.cli.recordings import span_options
-from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from odometry.parameters import ParameterSet

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from terrain.cli.import_poses import (
+from terrain.cli.options import OUTPUT, Positive
+from terrain.cli.verbs.import_poses import (
     PoseFiles,
     add_to_run,
     pose_options,
     without_reference,
     write_poses,
 )
-from terrain.cli.options import OUTPUT, Positive
 
 if TYPE_CHECKING:
     from odometry.bags.import_bags import Imported
@@ -237,7 +237,7 @@ def _print_imported(out: Path, imported: "Imported") -> None:
 def _check(out: Path) -> None:
     """Check the run folder, and say what to do next."""
     from terrain.checks.recording import check_run
-    from terrain.cli.check import next_step, print_findings
+    from terrain.cli.verbs.check import next_step, print_findings
 
     report = check_run(out)
     print_findings(out, report)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from terrain.cli.options import OUTPUT, processes_option, scheduler_option
-from terrain.cli.run import run_options
+from terrain.cli.verbs.run import run_options
 
 if TYPE_CHECKING:
     from terrain.batch.batch import Batch
@@ -112,7 +112,7 @@ def _jobs(folders: list[Path], out: Path, options: "RunOptions") -> "list[Job]":
 
 def _of_run(folder: Path) -> click.Context:
     """The command `run` with the options of this one, on one folder."""
-    from terrain.cli.run import run
+    from terrain.cli.verbs.run import run
 
     given = click.get_current_context()
     context = click.Context(run)

@@ -121,8 +121,8 @@ def train(
     from terrain.classification.model_file import is_model
     from terrain.classification.training import train as train_classifier
     from terrain.cli.outputs import WHOLE, claim_file
-    from terrain.cli.train_notes import notes
-    from terrain.cli.train_text import (
+    from terrain.cli.texts.train_notes import notes
+    from terrain.cli.texts.train_text import (
         claim_reliability_picture,
         summary,
         write_reliability_picture,

@@ -105,16 +105,16 @@ def camera(
       terrain-odometry camera my_run --file camera.yaml --points marked.csv --out camera
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.camera_outputs import draw, write_tables
-    from terrain.cli.camera_text import (
+    from terrain.cli.outputs import claim_folder
+    from terrain.cli.recordings import read_run
+    from terrain.cli.texts.camera_outputs import draw, write_tables
+    from terrain.cli.texts.camera_text import (
         print_doubts,
         print_lens,
         print_mount,
         print_seen,
         print_written,
     )
-    from terrain.cli.outputs import claim_folder
-    from terrain.cli.recordings import read_run
 
     sources = {
         "--transforms": transforms,
@@ -208,7 +208,7 @@ def _placed(
 
 def _write(run_folder: Path, placed: "MountSource | None") -> None:
     from terrain.calibration.camera_table import write_camera
-    from terrain.cli.camera_text import is_no_mount
+    from terrain.cli.texts.camera_text import is_no_mount
     from terrain.errors import CalibrationError
 
     if placed is None:

@@ -53,7 +53,7 @@ def classify(
       terrain-odometry classify terrain.model other_photos
     """
     from terrain.classification.classifier import TerrainClassifier
-    from terrain.cli.labelled_images import (
+    from terrain.cli.texts.labelled_images import (
         print_held_out,
         print_likeness,
         print_unnamed,

@@ -116,9 +116,9 @@ def label(
     from odometry.feel.model_file import read_feel_model
     from odometry.parameters import read_parameters
     from terrain.believed_images import run_to_label
-    from terrain.cli.label_text import spans_by_run, summary
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
+    from terrain.cli.texts.label_text import spans_by_run, summary
     from terrain.labelling.corrections import read_corrections
     from terrain.labelling.given_terrain import SURE, given_by_feel, given_by_spans, given_terrain
     from terrain.labelling.label_runs import label_runs
