@@ -180,6 +180,38 @@ def gains_at(records: Sequence[Record], row: int, rate_hz: float) -> tuple[Float
     return np.asarray(gains), float(np.mean((wanted - table @ gains) ** 2))
 
 
+def without_biases(
+    records: Sequence[Record], row: int, response: Response, sigma: float
+) -> Response:
+    """The response with gains that are found together with a bias of each record.
+
+    A constant that a sensor adds is otherwise an answer to the treads, above all of slow drives. It
+    has the deviation `sigma` about 0, and what the response leaves counts by what lasts of it.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    row : int
+        Of the quantity that has biases.
+    response : Response
+        As `fitted_response` finds it.
+    sigma : float
+        In the unit of the quantity.
+    """
+    power = max(errors_of(records, row, response).power, LEAST_VARIANCE)
+    square, right = np.zeros((3, 3)), np.zeros(3)
+    for record in records:
+        inputs, target = simulated(record, row, response.rate_hz)
+        ones = _projected(np.ones((len(target), 1)), record, response.rate_hz)[:, 0]
+        least = power / record.step_s / sigma**2
+        # the bias that is best for given gains is put in their place
+        taken = ones / (ones @ ones + least)
+        square += inputs.T @ inputs - np.outer(inputs.T @ ones, taken @ inputs)
+        right += inputs.T @ target - (inputs.T @ ones) * (taken @ target)
+    square += RIDGE * np.diag(np.diag(square)) * [1.0, 0.0, 0.0]
+    return Response(response.rate_hz, np.linalg.solve(square + 1e-12 * np.eye(3), right))
+
+
 def _left(record: Record, row: int, response: Response) -> FloatArray:
     inputs, target = simulated(record, row, response.rate_hz)
     return np.asarray(target - inputs @ response.gains)
@@ -190,11 +222,15 @@ def simulated(record: Record, row: int, rate_hz: float) -> tuple[FloatArray, Flo
 
     What the unknown value at the start leaves behind is projected out of both.
     """
+    table = np.column_stack([_answers(record, row, rate_hz), record.table[:, row]])
+    table = _projected(table, record, rate_hz)
+    return table[:, :3], table[:, 3]
+
+
+def _projected(table: FloatArray, record: Record, rate_hz: float) -> FloatArray:
     forgotten = np.exp(-rate_hz * record.step_s * np.arange(len(record.table)))
     forgotten /= np.linalg.norm(forgotten)
-    table = np.column_stack([_answers(record, row, rate_hz), record.table[:, row]])
-    table -= np.outer(forgotten, forgotten @ table)
-    return table[:, :3], table[:, 3]
+    return np.asarray(table - np.outer(forgotten, forgotten @ table))
 
 
 def _answers(record: Record, row: int, rate_hz: float) -> FloatArray:

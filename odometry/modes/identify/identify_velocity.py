@@ -8,7 +8,7 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.independent_runs import check_no_run_twice
-from odometry.modes.bank_inputs import forward_speed_m_s, velocity_signals
+from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, forward_speed_m_s, velocity_signals
 from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.response import (
@@ -18,6 +18,7 @@ from odometry.modes.response import (
     fitted_response,
     gain_spread,
     growing_power,
+    without_biases,
 )
 from odometry.modes.velocity import VelocityModes
 from odometry.run import UNKNOWN, Run
@@ -39,7 +40,9 @@ def identify_velocity_modes(
     """Identify A, B and the noise of each terrain that the runs name (Salvi 2024 eq. 2).
 
     Each row of eq. 2 is fitted by itself: what it answers to what was measured of the other
-    quantity and to the treads, simulated over whole stretches.
+    quantity and to the treads, simulated over whole stretches. The gains of the yaw rate are found
+    with a bias of the gyroscope on each stretch; their errors are those of gains without it, which
+    differ from one drive to the next as much as a bias may.
 
     Parameters
     ----------
@@ -88,8 +91,9 @@ def identify_velocity_modes(
     speed_power, spread = np.zeros((len(names), 2)), np.zeros(len(names))
     of_turns: dict[str, Response] = {}
     for place, name in enumerate(names):
+        fitted = pooled if shared else records[name]
         for row in measured_rows:
-            response = fitted_response(pooled if shared else records[name], row)
+            response = fitted_response(fitted, row)
             errors = errors_of(records[name], row, response)
             blocks[place, row] = response.row_of(row)
             measurement[place, row] = errors.variance
@@ -99,6 +103,8 @@ def identify_velocity_modes(
             else:
                 spread[place] = gain_spread(records[name], row, response)
                 of_turns[name] = response
+                unbiased = without_biases(fitted, row, response, BIAS_SIGMA_RAD_S)
+                blocks[place, row] = unbiased.row_of(row)
     if common_noise:
         measurement[:] = np.median(measurement, axis=0)
     process = measurement * np.median([record.step_s for record in pooled]) / CORRECTED_S**2

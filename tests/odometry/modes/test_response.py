@@ -10,6 +10,7 @@ from odometry.modes.response import (
     errors_of,
     fitted_response,
     gain_spread,
+    without_biases,
 )
 from tests.odometry.modes.mode_drives import integrated, wandering
 
@@ -180,3 +181,59 @@ def test_a_gain_that_depends_on_the_run_is_a_spread():
 def test_few_turns_say_nothing_of_a_spread():
     rng, at_once = np.random.default_rng(5), Response(200.0, np.array([0.0, -200.0, 200.0]))
     assert gain_spread([turning(rng, 0.1, 0.02, turns=4)], 1, at_once) == 0.0
+
+
+SLOW_BIASES_RAD_S = (0.006, -0.005)
+
+
+def biased(rng, *, sigma=0.001):
+    """Two records of a robot at a few centimetres a second, each with a bias of its own."""
+    response = Response(2.5, np.array([0.0, -3.0, 3.0]))
+    records = []
+    for bias in SLOW_BIASES_RAD_S:
+        inputs = np.column_stack([np.zeros(3000), 0.02 + 0.004 * wandering(rng, 3000, STEP_S)])
+        table = np.zeros((3000, 4))
+        table[:, OTHERS[1]] = inputs
+        table[:, 1] = simulated(response, inputs, 0.0) + bias + sigma * rng.normal(size=3000)
+        records.append(Record(STEP_S, table))
+    return response, records
+
+
+def by_columns(records, response, sigma):
+    """Gains by the normal equations with a column for each bias, of which each has a prior."""
+    blocks, wanted = [], []
+    for place, one in enumerate(records):
+        answers = [
+            simulated(Response(response.rate_hz, unit), one.table[:, OTHERS[1]], 0.0)
+            for unit in np.eye(3)
+        ]
+        columns = np.column_stack([*answers, np.zeros((len(one.table), len(records)))])
+        columns[:, 3 + place] = 1.0
+        start = np.exp(-response.rate_hz * STEP_S * np.arange(len(one.table)))
+        start /= np.linalg.norm(start)
+        blocks.append(columns - np.outer(start, start @ columns))
+        wanted.append(one.table[:, 1] - start * (start @ one.table[:, 1]))
+    table = np.concatenate(blocks)
+    power = errors_of(records, 1, response).power
+    least = power / STEP_S / sigma**2 * np.diag([0, 0, 0, *np.ones(len(records))])
+    least[0, 0] = 1.0  # the speed is zero here: its gain is open
+    return np.linalg.solve(table.T @ table + least, table.T @ np.concatenate(wanted))[:3]
+
+
+def test_a_bias_of_each_record_is_no_answer_to_the_treads(rng):
+    true, records = biased(rng)
+    alone = fitted_response(records[:1], 1)
+    settled = without_biases(records[:1], 1, alone, 0.005)
+    straight = np.array([0.0, 0.02, 0.02])  # which turns nothing
+    turned = [abs(response.gains @ straight) / 2.5 for response in (alone, settled)]
+    assert turned[0] > 0.003
+    assert turned[1] < turned[0] / 3
+    assert np.abs(settled.gains - true.gains)[1:].max() < 0.3
+
+
+def test_biases_are_those_of_least_squares_with_a_column_for_each(rng):
+    _, records = biased(rng)
+    response = fitted_response(records, 1)
+    settled = without_biases(records, 1, response, 0.005)
+    np.testing.assert_allclose(settled.gains, by_columns(records, response, 0.005), rtol=1e-3)
+    assert settled.rate_hz == response.rate_hz
