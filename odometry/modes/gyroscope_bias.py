@@ -12,6 +12,8 @@ from odometry.modes.modes_config import ModesConfig
 
 JUMP_SIGMAS = 4.0  # from the estimated bias: farther off it is another one
 
+STANDING_SHARE = 0.05  # of the fastest: slow robots drive at what is rest of others
+
 SETTLES_S = 0.5  # after the treads stopped
 LEAST_S = 0.5  # of what is read after that
 MOST_RAD_S = 0.1  # of a bias: more is another fault, or the robot turns though no tread does
@@ -36,8 +38,11 @@ class BiasReading:
     tolerance_rad_s: float = 0.0
 
 
-def bias_readings(signals: Signals) -> dict[int, BiasReading]:
-    """By row: from the headings of measured poses, and where the robot stood from that."""
+def bias_readings(signals: Signals, fastest_m_s: float = np.inf) -> dict[int, BiasReading]:
+    """By row: from the headings of measured poses, and where the robot stood from that.
+
+    `fastest_m_s` is as for `moving`.
+    """
     found = {}
     check = signals.heading_check
     if check is not None:
@@ -48,7 +53,8 @@ def bias_readings(signals: Signals) -> dict[int, BiasReading]:
                 found[int(rows[place])] = BiasReading(
                     float(check.bias_rad_s[place]), variance, BIAS_SIGMA_RAD_S
                 )
-    return found | {row: BiasReading(*of) for row, of in standing_biases(signals).items()}
+    stood = standing_biases(signals, fastest_m_s)
+    return found | {row: BiasReading(*of) for row, of in stood.items()}
 
 
 def with_reading(
@@ -88,19 +94,25 @@ def bias_is_open(
     return np.asarray(np.abs(biases_rad_s - expected) > least)
 
 
-def moving(signals: Signals) -> BoolArray:
-    """Where (N,) a tread turned before the stamp: at rest nothing depends on the terrain."""
-    turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > STANDING_M_S
+def moving(signals: Signals, fastest_m_s: float = np.inf) -> BoolArray:
+    """Where (N,) a tread turned before the stamp: at rest nothing depends on the terrain.
+
+    Of a robot whose treads turn at `fastest_m_s` at most, less is rest than of others.
+    """
+    least_m_s = min(STANDING_M_S, STANDING_SHARE * fastest_m_s)
+    turning = np.abs(signals.tread_speeds_m_s).max(axis=1) > least_m_s
     return np.append(False, turning[:-1])
 
 
-def standing_biases(signals: Signals) -> dict[int, tuple[float, float]]:
+def standing_biases(
+    signals: Signals, fastest_m_s: float = np.inf
+) -> dict[int, tuple[float, float]]:
     """Mean and its variance, by the last row of each rest that is long enough.
 
     None of a value that is held. The yaw rate is the last measured entry.
     """
     found: dict[int, tuple[float, float]] = {}
-    rows = np.flatnonzero(~moving(signals))
+    rows = np.flatnonzero(~moving(signals, fastest_m_s))
     for stand in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if len(rows) else []:
         stamps_s = signals.stamps_s[stand]
         readings = signals.measured[stand, -1]

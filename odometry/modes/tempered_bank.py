@@ -67,7 +67,7 @@ def usable_measurements(signals: Signals, gap_ends: IntArray, fastest_m_s: float
     identified at.
     """
     faster = faster_than(signals.tread_speeds_m_s, fastest_m_s)
-    informative = moving(signals) & ~np.append(False, faster[:-1])
+    informative = moving(signals, fastest_m_s) & ~np.append(False, faster[:-1])
     informative &= ~touched(signals.gaps_s, signals.stamps_s, signals.stamps_s)
     informative &= ~within(signals.stamps_s, signals.blocked_s)
     informative[gap_ends] = False

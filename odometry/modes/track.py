@@ -93,7 +93,7 @@ def follow_signals(
     gap_ends = np.searchsorted(signals.stamps_s, signals.gaps_s[:, 1])
     gap_ends = gap_ends[gap_ends < len(signals)]
     measured = usable_measurements(signals, gap_ends, modes.fastest_m_s)
-    roughness, readings = modes.roughness(signals), bias_readings(signals)
+    roughness, readings = modes.roughness(signals), bias_readings(signals, modes.fastest_m_s)
     size, states = len(signals), modes.model().states
     held = np.append(np.ones(states - 1), independent)  # share of each variance that filters hold
     lasting = np.zeros((count, states))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, Signals
-from odometry.modes.gyroscope_bias import SETTLES_S, standing_biases
+from odometry.modes.gyroscope_bias import SETTLES_S, moving, standing_biases
 from odometry.modes.track import follow_signals
 from tests.odometry.modes.mode_examples import velocity_set
 
@@ -57,3 +57,12 @@ def test_a_robot_that_stood_knows_the_bias_from_then_on():
     assert after == pytest.approx(BIAS_RAD_S, abs=4 * NOISE_RAD_S / np.sqrt(175))
     assert track.sigmas[601, -1] < 2 * NOISE_RAD_S / np.sqrt(175)
     np.testing.assert_allclose(track.probabilities[601], track.probabilities[599], atol=0.05)
+
+
+def test_a_slow_robot_drives_at_what_is_rest_of_others():
+    """At 0.008 m/s it turns with the treads; the turn is no bias of a robot of 0.03 m/s."""
+    signals = signals_of([(400, 700)], BIAS_RAD_S)
+    signals.tread_speeds_m_s[400:700] = [0.005, 0.008]
+    assert list(standing_biases(signals, 1.0)) == list(standing_biases(signals)) == [700]
+    assert not standing_biases(signals, 0.03)
+    assert moving(signals, 0.03).sum() == moving(signals).sum() + 300
