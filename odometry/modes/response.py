@@ -209,7 +209,8 @@ def without_biases(
         square += inputs.T @ inputs - np.outer(inputs.T @ ones, taken @ inputs)
         right += inputs.T @ target - (inputs.T @ ones) * (taken @ target)
     square += RIDGE * np.diag(np.diag(square)) * [1.0, 0.0, 0.0]
-    return Response(response.rate_hz, np.linalg.solve(square + 1e-12 * np.eye(3), right))
+    gains = np.asarray(np.linalg.solve(square + 1e-12 * np.eye(3), right))
+    return Response(response.rate_hz, gains)
 
 
 def _left(record: Record, row: int, response: Response) -> FloatArray:
