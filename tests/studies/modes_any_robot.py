@@ -32,11 +32,12 @@ COLUMNS = (
 PACES_RAD_S = (0.0, 0.1, 0.5, np.inf)  # of the sharpest turn
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+def run(study, what, name):
+    """Do a study of a seed for each seed asked for, and print its tables."""
+    parser = argparse.ArgumentParser(description=what.split("\n", 1)[0])
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seeds", type=int, default=40)
-    parser.add_argument("--out", type=Path, default=Path("modes_any_robot"))
+    parser.add_argument("--out", type=Path, default=Path(name))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "cases.csv"
@@ -58,7 +59,16 @@ def main():
 
 def study(seed):
     """The rows of one robot; a single one where it was refused."""
-    world = any_robot.world_of(seed)
+    kinds = (
+        "clean",
+        any_robot.OUTSIDE[seed % len(any_robot.OUTSIDE)],
+        any_robot.RECORD[seed % len(any_robot.RECORD)],
+    )
+    return studied(any_robot.world_of(seed), seed, kinds)
+
+
+def studied(world, seed, kinds, drives=2):
+    """The rows of these drives of a robot, calibrated on so many of each terrain."""
     robot = world.robot
     about = dict.fromkeys(COLUMNS, "") | {
         "seed": str(seed),
@@ -69,16 +79,12 @@ def study(seed):
         "source": world.source or "none",
         "gyro_noise": f"{world.gyro_noise_rad_s:.2g}",
     }
-    kinds = (
-        "clean",
-        any_robot.OUTSIDE[seed % len(any_robot.OUTSIDE)],
-        any_robot.RECORD[seed % len(any_robot.RECORD)],
-    )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         begin = time.process_time()
+        written = any_robot.write_calibration(world, seed, folder)
         try:
-            modes = identified(any_robot.write_calibration(world, seed, folder))
+            modes = identified([of for of in written if int(of.name.rpartition("_")[2]) < drives])
         except OdometryError as error:
             return [about | {"kind": "identify", "reason": _one_line(error)}]
         rows = []
@@ -164,4 +170,4 @@ def _one_line(error):
 
 
 if __name__ == "__main__":
-    main()
+    run(study, __doc__, "modes_any_robot")
