@@ -47,21 +47,69 @@ def _places_of_nodes(camera: Camera, height: int, width: int) -> FloatArray:
     return places_at(camera, width, nodes).reshape(len(rows), len(columns), 2)
 
 
-def carried_back(camera: Camera, image: AnyArray, step: FloatArray) -> tuple[AnyArray, BoolArray]:
-    """A reduced image (h, w) after a step, its terrain where it was before; and where it is known.
+def carried_back(
+    camera: Camera, image: AnyArray, step: FloatArray, size_px: int
+) -> tuple[AnyArray, BoolArray, BoolArray]:
+    """A reduced image (h, w) after a step, its terrain where it was before, square by square.
 
-    Both (h, w), the second False where terrain has left the image.
+    Parameters
+    ----------
+    camera : Camera
+    image : (h, w)
+    step : (3,)
+        x, y [m], yaw [rad] of the second robot frame in the first.
+    size_px : int
+        Of the squares, a multiple of NODE_PX.
+
+    Returns
+    -------
+    (h', w')
+        The block round all squares whose terrain is still in the image; the image itself where
+        there is none.
+    (K,) booleans
+        Which squares of the whole image lie in the block, row by row.
+    (K',) booleans
+        The terrain of which squares of the block is still in the image.
     """
     height, width = image.shape
     places = _places_of_nodes(camera, height, width)
     there = pixels_after(camera, width, step, places.reshape(-1, 2)).reshape(places.shape)
-    size = places.shape[1] * NODE_PX, places.shape[0] * NODE_PX
-    at_pixels = cv2.resize(there.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
-    at_pixels = at_pixels[NODE_PX:, NODE_PX:][:height, :width]
-    known = cv2.inRange(at_pixels, (0.0, 0.0), (width - 1.0, height - 1.0))  # NaN is not
-    cv2.patchNaNs(at_pixels, -1.0)
-    carried = cv2.remap(image, at_pixels, None, cv2.INTER_LINEAR)  # type: ignore[call-overload]
-    return np.asarray(carried), np.asarray(known > 0)
+    nodes = there.astype(np.float32)
+    known = _squares_within(nodes, (height, width), size_px)
+    if not known.any():
+        return image, np.ones(known.size, dtype=bool), known.ravel()
+    rows, columns = (_span(known.any(axis=axis)) for axis in (1, 0))
+    in_block = np.zeros(known.shape, dtype=bool)
+    in_block[rows, columns] = True
+    times = size_px // NODE_PX
+    block = nodes[tuple(slice(of.start * times, of.stop * times + 2) for of in (rows, columns))]
+    size = block.shape[1] * NODE_PX, block.shape[0] * NODE_PX
+    at_pixels = cv2.resize(block, size, interpolation=cv2.INTER_LINEAR)
+    at_pixels = at_pixels[NODE_PX:-NODE_PX, NODE_PX:-NODE_PX]
+    carried = cv2.remap(  # type: ignore[call-overload]
+        image, at_pixels, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
+    return np.asarray(carried), in_block.ravel(), known[rows, columns].ravel()
+
+
+def _squares_within(nodes: AnyArray, shape: tuple[int, int], size_px: int) -> BoolArray:
+    """Whether the terrain of squares (rows, columns) is in an image, by the pixels of its nodes.
+
+    The nodes round it must be somewhere: up to them terrain is interpolated.
+    """
+    height, width = shape
+    inside = cv2.inRange(nodes, (0.0, 0.0), (width - 1.0, height - 1.0))  # NaN is not
+    somewhere = np.isfinite(nodes[..., 0]).astype(np.uint8)
+    inside = cv2.min(inside, cv2.erode(somewhere, np.ones((3, 3))))
+    inside = inside[1:, 1:][: height // NODE_PX, : width // NODE_PX]
+    squares = tiles(inside, size_px // NODE_PX).all(axis=1)
+    return np.asarray(squares.reshape(height // size_px, width // size_px))
+
+
+def _span(found: BoolArray) -> slice:
+    """From the first to the last that was found."""
+    places = np.flatnonzero(found)
+    return slice(int(places[0]), int(places[-1]) + 1)
 
 
 def details_between(image: AnyArray) -> AnyArray:

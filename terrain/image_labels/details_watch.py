@@ -1,14 +1,12 @@
 """From when to when the images of a camera lack details of the terrain that they showed before."""
 
-import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.image_labels.slow_return import SlowReturn
-from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails, change_of_details
-from terrain.images import to_grey
+from terrain.image_labels.terrain_details import LOSS, TileDetails, change_of_details
 
 LOSSES = (LOSS, float(np.log(0.65)))  # of contrast, and of focus of one image at once
 REGAINED = 2 / 3  # of a loss: the details are back
@@ -36,25 +34,24 @@ class DetailsWatch:
         self._slow = SlowReturn()
 
     def has_lost(self, image: AnyArray, pose: FloatArray) -> bool:
-        """Whether an image (H, W) or (H, W, 3) lacks details that one before it showed.
+        """Whether an image (h, w), `reduced`, lacks details that one before it showed.
 
         The answer holds until the details of the same terrain are back: where two images have no
         terrain in common, it cannot be determined anew. Poses (3,) are of the robot.
         """
-        reduced = _reduced(image)
         if self._before is None:
-            details = TileDetails.of(reduced)
+            details = TileDetails.of(image)
             self._before = details, pose
             self._slow.add_clear(details, None, 0.0)
             return False
         earlier, was = self._before
         step = se2.between(was, pose)
-        change = change_of_details(self._camera, earlier, reduced, step)
+        change = change_of_details(self._camera, earlier, image, step)
         had_lost, self._lost = self._lost is not None, self._lost_after(change)
         has_lost = self._lost is not None
         kept_m = NEAR_M if has_lost and self._is_clear else APART_M
         if change is None or has_lost < had_lost or float(np.hypot(*step[:2])) > kept_m:
-            details = TileDetails.of(reduced)
+            details = TileDetails.of(image)
             self._follow(details, None if had_lost > has_lost else change, float(step[0]))
             self._before, self._is_clear = (details, pose), self._lost is None
         return self._lost is not None
@@ -79,11 +76,3 @@ class DetailsWatch:
         kind, by = self._lost
         regained = change[kind] - (by[kind] if self._is_clear else 0.0)
         return None if regained > -REGAINED * by[kind] else self._lost
-
-
-def _reduced(image: AnyArray) -> AnyArray:
-    """An image in grey, at most WIDTH_PX wide."""
-    if image.shape[1] > WIDTH_PX:
-        height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
-        image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
-    return to_grey(image)

@@ -22,6 +22,7 @@ from terrain.errors import CameraError, ImageError
 from terrain.image_labels.details_watch import DetailsWatch
 from terrain.image_labels.image_label import ImageLabel, answered
 from terrain.image_labels.still_image import StillWatch
+from terrain.image_labels.terrain_details import reduced
 from terrain.images import as_stored, read_image
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from terrain.region.warp import coarsest_m, ground_view, pixel_view, scale_mismatch, view_shape
@@ -216,8 +217,9 @@ class ImageLabeller:
 
     def _fault(self, image: ByteImage, pose: FloatArray) -> str:
         """Why an image shows no terrain ahead that may be named, by those before it; or ""."""
-        has_lost = self._details.has_lost(image, pose)
-        if self._still.stays(image, pose):
+        small = reduced(image)
+        has_lost = self._details.has_lost(small, pose)
+        if self._still.stays(small, pose):
             return "the image stays the same while the treads move"
         return LOST_DETAILS if has_lost else ""
 

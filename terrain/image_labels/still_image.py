@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.image_labels.carried_image import (
@@ -71,14 +71,16 @@ class StillImage:
         moves = np.linalg.norm(there - here, axis=1) > FLOW_PX
         if before.shape != after.shape or np.count_nonzero(moves) < FEWEST_TILES:
             return None
-        in_place = _alike(before, after, moves)
+        first, second = tiles(before, TILE_PX), tiles(after, TILE_PX)
+        in_place = _alike(first[moves], second[moves])
         if in_place < STAYS:
             return False
-        moved, known = carried_back(self.camera, after, step)
-        whole = moves & (tiles(known, TILE_PX).min(axis=1) > 0)
+        moved, in_block, known = carried_back(self.camera, after, step, TILE_PX)
+        whole = moves[in_block] & known
         if np.count_nonzero(whole) < FEWEST_TILES:
             return in_place > SURELY
-        return _alike(before, moved, whole) < AS_WELL * _alike(before, after, whole)
+        first, second = first[in_block][whole], second[in_block][whole]
+        return _alike(first, tiles(moved, TILE_PX)[whole]) < AS_WELL * _alike(first, second)
 
 
 class StillWatch:
@@ -110,13 +112,13 @@ class StillWatch:
         return self._stays
 
 
-def _alike(one: AnyArray, other: AnyArray, chosen: BoolArray) -> float:
-    """Correlation of two images that nearly all of the chosen tiles (K,) have."""
-    first, second = (_centred(tiles(image, TILE_PX)[chosen]) for image in (one, other))
-    sizes = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
-    alike = (first * second).sum(axis=1) / np.maximum(sizes, 1e-9)
-    return float(np.quantile(alike, 1 - NEARLY_ALL))
+def _alike(one: AnyArray, other: AnyArray) -> float:
+    """Correlation that nearly all tiles (K, pixels) of two images have."""
+    first, second = (tiles - tiles.mean(axis=1, keepdims=True) for tiles in (one, other))
+    sizes = np.sqrt(_products(first, first) * _products(second, second))
+    alike = np.sort(_products(first, second) / np.maximum(sizes, 1e-9))
+    return float(np.interp((1 - NEARLY_ALL) * (len(alike) - 1), np.arange(len(alike)), alike))
 
 
-def _centred(tiles: AnyArray) -> AnyArray:
-    return np.asarray(tiles - tiles.mean(axis=1, keepdims=True))
+def _products(one: AnyArray, other: AnyArray) -> FloatArray:
+    return np.asarray(np.einsum("kp,kp->k", one, other))

@@ -8,10 +8,13 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from terrain.camera.camera import Camera
-from terrain.image_labels.carried_image import carried_back, tiles
+from terrain.image_labels.carried_image import carried_back
+from terrain.images import to_grey
 
 WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
 OCTAVES, SMOOTHED_PX = 3, 3  # finest first: what a mean over so many pixels takes away of each
+LESS_MEAN = -np.full((SMOOTHED_PX, SMOOTHED_PX), SMOOTHED_PX**-2.0, np.float32)
+LESS_MEAN[SMOOTHED_PX // 2, SMOOTHED_PX // 2] += 1.0
 TILE_PX, FEWEST_TILES = 32, 8
 LEAST_GREY, LEAST_DETAIL = 5.0, 0.5  # so that darkness and noise do not count
 LEAST_SHARE = 0.5  # of the tiles of common terrain: the median of few of them is uncertain
@@ -47,14 +50,22 @@ class TileDetails:
         octaves = []
         for octave in range(OCTAVES):
             values = cv2.pyrDown(values) if octave else values
-            fine = values - cv2.blur(values, (SMOOTHED_PX, SMOOTHED_PX))
-            octaves.append(0.5 * np.log(_means(fine * fine, TILE_PX >> octave) + LEAST_DETAIL**2))
+            fine = cv2.filter2D(values, cv2.CV_32F, LESS_MEAN)
+            octaves.append(0.5 * np.log(_mean_squares(fine, TILE_PX >> octave) + LEAST_DETAIL**2))
         return cls(image, np.array(octaves), np.log(_means(whole, TILE_PX) + LEAST_GREY))
 
     @property
     def level(self) -> float:
         """Mean logarithm of details over light, whatever the image shows."""
         return float((self.octaves.mean(axis=0) - self.light).mean())
+
+
+def reduced(image: AnyArray) -> AnyArray:
+    """An image (H, W) or (H, W, 3) in grey, at most WIDTH_PX wide."""
+    if image.shape[1] > WIDTH_PX:
+        height = max(1, round(image.shape[0] * WIDTH_PX / image.shape[1]))
+        image = cv2.resize(image, (WIDTH_PX, height), interpolation=cv2.INTER_AREA)
+    return to_grey(image)
 
 
 def _whole_tiles(image: AnyArray) -> AnyArray:
@@ -67,6 +78,14 @@ def _means(values: AnyArray, size_px: int) -> FloatArray:
     size = values.shape[1] // size_px, values.shape[0] // size_px
     means = cv2.resize(values, size, interpolation=cv2.INTER_AREA)
     return np.asarray(means.ravel(), dtype=np.float64)
+
+
+def _mean_squares(values: AnyArray, size_px: int) -> FloatArray:
+    """Means (K,) of the squared values of the squares of an image (h, w), row by row."""
+    rows, columns = values.shape[0] // size_px, values.shape[1] // size_px
+    strips = values.reshape(rows, size_px, -1)
+    sums = np.einsum("spc,spc->sc", strips, strips).reshape(rows, columns, size_px).sum(axis=2)
+    return np.asarray(sums.ravel() / size_px**2, dtype=np.float64)
 
 
 def change_of_details(
@@ -98,19 +117,19 @@ def change_of_details(
     """
     if before.image.shape != after.shape:
         return None
-    carried, known = carried_back(camera, after, step)
-    common = tiles(known, TILE_PX).all(axis=1)
+    carried, in_block, common = carried_back(camera, after, step, TILE_PX)
     if np.count_nonzero(common) < FEWEST_TILES:
         return None
     there = TileDetails.of(carried)
-    levels = np.maximum(before.octaves.mean(axis=0), there.octaves.mean(axis=0))
+    octaves, light = before.octaves[:, in_block], before.light[in_block]
+    levels = np.maximum(octaves.mean(axis=0), there.octaves.mean(axis=0))
     compared = common & (levels > np.log(DISTINCT))
     fewest = max(FEWEST_TILES, LEAST_SHARE * np.count_nonzero(common))
     if np.count_nonzero(compared) < fewest:
         return None
-    finest, *coarser = (there.octaves - before.octaves)[:, compared]
+    finest, *coarser = (there.octaves - octaves)[:, compared]
     details = np.mean(coarser, axis=0)
-    over_light = details - (there.light - before.light)[compared]
+    over_light = details - (there.light - light)[compared]
     of_details, of_both, focus = np.median([details, over_light, finest - coarser[0]], axis=1)
     contrast = np.sign(of_details) * np.sqrt(max(of_details * of_both, 0.0))
     return np.array([contrast, focus])

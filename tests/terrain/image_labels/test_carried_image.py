@@ -29,10 +29,34 @@ def test_there_and_back_is_the_same_place():
 
 def test_an_image_carried_back_is_the_one_before(terrain):
     before, after = (seen(terrain, down(60), pose) for pose in ((0, 0, 0), STEP))
-    moved, known = carried_back(down(60), after, STEP)
-    assert 0.3 < known.mean() < 1.0
-    assert np.corrcoef(moved[known], before[known])[0, 1] > 0.98
-    assert np.corrcoef(after[known], before[known])[0, 1] < 0.5
+    moved, in_block, known = carried_back(down(60), after, STEP, 16)
+    assert 0.3 < known.sum() / in_block.size < 1.0
+    there = tiles(moved, 16)[known]
+    earlier, later = (tiles(image, 16)[in_block][known] for image in (before, after))
+    assert np.corrcoef(there.ravel(), earlier.ravel())[0, 1] > 0.98
+    assert np.corrcoef(later.ravel(), earlier.ravel())[0, 1] < 0.5
+
+
+def test_terrain_that_left_the_image_is_in_no_square(terrain):
+    ahead, away = (np.array([x, 0.0, 0.0]) for x in (0.3, 9.0))
+    image = seen(terrain, down(60), ahead)
+    moved, in_block, known = carried_back(down(60), image, ahead, 32)
+    here = middles(image.shape, 32)
+    there = pixels_after(down(60), SIZE[0], ahead, places_at(down(60), SIZE[0], here))
+    inside = ((there > 16) & (there < np.array(SIZE) - 17)).all(axis=1)
+    assert moved.shape < image.shape
+    assert np.all(known[inside[in_block]])
+    assert not inside[~in_block].any()
+    assert not known[(there[in_block] < 0).any(axis=1)].any()
+    assert not carried_back(down(60), image, away, 32)[2].any()
+
+
+def test_squares_at_the_horizon_are_not_known(terrain):
+    camera, step = down(10), np.array([0.1, 0.0, 0.0])
+    _, in_block, known = carried_back(camera, seen(terrain, camera), step, 16)
+    places = places_at(camera, SIZE[0], middles(SIZE[::-1], 16) - [0, 16])  # of the square above
+    assert np.isnan(places).any()
+    assert not known[np.isnan(places).any(axis=1)[in_block]].any()
 
 
 @pytest.mark.parametrize("size_px", [16, 32])

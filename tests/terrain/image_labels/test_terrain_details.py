@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from terrain.image_labels.details_watch import NEAR_M, DetailsWatch
-from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails
+from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails, reduced
 from terrain.image_labels.terrain_details import change_of_details as change_from
 from tests.terrain.image_labels.test_still_image import SIZE, down
 from tests.terrain.image_labels.test_still_image import seen as shown
@@ -149,9 +149,9 @@ def test_large_images_are_compared_at_the_width_of_small_ones(rough):
     camera, pose = down(50), np.zeros(3)
     image = cv2.resize(shown(rough, camera), (4 * SIZE[0], 4 * SIZE[1]))
     watch = DetailsWatch(camera)
-    assert not watch.has_lost(image, pose)
+    assert not watch.has_lost(reduced(image), pose)
     assert not watch.has_lost(shown(rough, camera), pose)
-    assert watch.has_lost(np.stack([fog(image)] * 3, axis=-1).astype(np.uint8), pose)
+    assert watch.has_lost(reduced(np.stack([fog(image)] * 3, axis=-1).astype(np.uint8)), pose)
     assert SIZE[0] == WIDTH_PX
 
 
