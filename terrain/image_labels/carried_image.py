@@ -78,7 +78,7 @@ def carried_back(
     known = _squares_within(nodes, (height, width), size_px)
     if not known.any():
         return image, np.ones(known.size, dtype=bool), known.ravel()
-    rows, columns = (_span(known.any(axis=axis)) for axis in (1, 0))
+    rows, columns = (_span(known, axis) for axis in (1, 0))
     in_block = np.zeros(known.shape, dtype=bool)
     in_block[rows, columns] = True
     times = size_px // NODE_PX
@@ -106,9 +106,9 @@ def _squares_within(nodes: AnyArray, shape: tuple[int, int], size_px: int) -> Bo
     return np.asarray(squares.reshape(height // size_px, width // size_px))
 
 
-def _span(found: BoolArray) -> slice:
-    """From the first to the last that was found."""
-    places = np.flatnonzero(found)
+def _span(found: BoolArray, over: int) -> slice:
+    """From the first to the last row (over columns, 1) or column (over rows, 0) with any."""
+    places = np.flatnonzero(found.any(axis=over))
     return slice(int(places[0]), int(places[-1]) + 1)
 
 

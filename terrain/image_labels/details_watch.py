@@ -6,7 +6,12 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.geometry import se2
 from terrain.camera.camera import Camera
 from terrain.image_labels.slow_return import SlowReturn
-from terrain.image_labels.terrain_details import LOSS, TileDetails, change_of_details
+from terrain.image_labels.terrain_details import (
+    LOSS,
+    TileDetails,
+    change_of_details,
+    may_have_lost,
+)
 
 LOSSES = (LOSS, float(np.log(0.65)))  # of contrast, and of focus of one image at once
 REGAINED = 2 / 3  # of a loss: the details are back
@@ -20,6 +25,7 @@ class DetailsWatch:
     An image is compared with one that was taken shortly before, and only where both show the same
     terrain: smooth terrain has lost nothing. The last image before a loss is kept while the robot
     is near, so that details may come back over some images there; farther on, by `SlowReturn`.
+    Once that knows how clear images change, they are compared where they show less in place.
 
     Parameters
     ----------
@@ -39,22 +45,28 @@ class DetailsWatch:
         The answer holds until the details of the same terrain are back: where two images have no
         terrain in common, it cannot be determined anew. Poses (3,) are of the robot.
         """
+        details = TileDetails.of(image)
         if self._before is None:
-            details = TileDetails.of(image)
             self._before = details, pose
             self._slow.add_clear(details, None, 0.0)
             return False
         earlier, was = self._before
         step = se2.between(was, pose)
-        change = change_of_details(self._camera, earlier, image, step)
+        looks = self._is_worth_a_look(earlier, details)
+        change = change_of_details(self._camera, earlier, image, step) if looks else None
         had_lost, self._lost = self._lost is not None, self._lost_after(change)
         has_lost = self._lost is not None
         kept_m = NEAR_M if has_lost and self._is_clear else APART_M
-        if change is None or has_lost < had_lost or float(np.hypot(*step[:2])) > kept_m:
-            details = TileDetails.of(image)
+        is_apart = float(np.hypot(*step[:2])) > kept_m
+        if is_apart or has_lost < had_lost or (looks and change is None):
             self._follow(details, None if had_lost > has_lost else change, float(step[0]))
             self._before, self._is_clear = (details, pose), self._lost is None
         return self._lost is not None
+
+    def _is_worth_a_look(self, before: TileDetails, after: TileDetails) -> bool:
+        """Whether the same terrain has to be compared in two images; of clear ones seldom."""
+        is_usual = self._lost is None and self._slow.knows_clear
+        return not is_usual or may_have_lost(self._camera, before, after)
 
     def _follow(self, details: TileDetails, change: FloatArray | None, ahead_m: float) -> None:
         """Follow an image that the next ones are compared with, after a change since the last."""

@@ -18,6 +18,7 @@ RISEN, LEAST_RISE = 0.8, 0.24  # of the greatest loss of contrast, and at least
 ALIKE = 0.2  # details of an image may be lower than those of the last clear ones
 ALIKE_M, NOW_M = 3.0, 1.0  # of travel on which these are, and images that are compared with them
 CLEAR_M = 2.0  # of travel on clear images, at least, to know how these change
+LEARNT_M = 10.0  # ... after which they need not be compared any more
 DISTINCT_SHARE = 0.25  # of the tiles: the focus of fewer is uncertain
 
 
@@ -35,10 +36,15 @@ class SlowReturn:
         self._trail: list[_Followed] = []
         self._first = self._greatest = 0.0
 
+    @property
+    def knows_clear(self) -> bool:
+        """Whether it has seen enough of how clear images change."""
+        return self._clear_m >= LEARNT_M
+
     def add_clear(self, details: TileDetails, contrast: float | None, ahead_m: float) -> None:
         """Add a clear image, its change of contrast since the one before, and the travel."""
         way_m = abs(ahead_m) + (self._clear[-1].way_m if self._clear else 0.0)
-        if contrast is not None and ahead_m > 0:
+        if contrast is not None and ahead_m > 0 and not self.knows_clear:
             self._clear_m += ahead_m
             self._clear_change += contrast
         recent = [image for image in self._clear if image.way_m >= way_m - ALIKE_M]

@@ -6,9 +6,9 @@ from typing import Self
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, BoolArray, FloatArray
 from terrain.camera.camera import Camera
-from terrain.image_labels.carried_image import carried_back
+from terrain.image_labels.carried_image import carried_back, places_of_squares
 from terrain.images import to_grey
 
 WIDTH_PX = 320  # of the images that are compared: larger ones are reduced to it
@@ -24,6 +24,10 @@ DISTINCT = 1.0  # grey levels of details: tiles with less may show noise alone
 # gamma 0.6 never. Of the focus -0.47 and more; blur of 2 px of 640 -0.35 to -0.9, blur by motion
 # of 9 px below -0.4 in 2 of 100
 LOSS = float(np.log(0.6))
+# The change in place of a quarter of the tiles, from which on images are compared on the same
+# terrain. In all of 635 images of four cameras that lost details it was -0.44 and less; it is below
+# -0.3 in 0 to 20 % of clear ones
+QUARTER, IN_PLACE = 0.25, -0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,9 +131,36 @@ def change_of_details(
     fewest = max(FEWEST_TILES, LEAST_SHARE * np.count_nonzero(common))
     if np.count_nonzero(compared) < fewest:
         return None
-    finest, *coarser = (there.octaves - octaves)[:, compared]
+    return _changes(there.octaves - octaves, there.light - light, compared, 0.5)
+
+
+def may_have_lost(camera: Camera, before: TileDetails, after: TileDetails) -> bool:
+    """Whether an image shows fewer details in place than one before, whatever terrain is there.
+
+    A quarter of the tiles do after a loss, unless nearly all terrain in sight has become another
+    one that shows more. This takes a fifth of the time of `change_of_details`.
+    """
+    if before.image.shape != after.image.shape:
+        return True
+    places = places_of_squares(camera, after.image.shape, TILE_PX)
+    levels = np.maximum(before.octaves.mean(axis=0), after.octaves.mean(axis=0))
+    compared = np.isfinite(places[:, 0]) & (levels > np.log(DISTINCT))
+    if np.count_nonzero(compared) < FEWEST_TILES:
+        return True
+    octaves, light = after.octaves - before.octaves, after.light - before.light
+    return bool(_changes(octaves, light, compared, QUARTER).min() < IN_PLACE)
+
+
+def _changes(
+    octaves: FloatArray, light: FloatArray, compared: BoolArray, share: float
+) -> FloatArray:
+    """Changes (2,) of contrast and focus by those of octaves (OCTAVES, K) and light (K,).
+
+    So large a share of the compared tiles has these changes or lower ones.
+    """
+    finest, *coarser = octaves[:, compared]
     details = np.mean(coarser, axis=0)
-    over_light = details - (there.light - light)[compared]
-    of_details, of_both, focus = np.median([details, over_light, finest - coarser[0]], axis=1)
+    of_tiles = np.array([details, details - light[compared], finest - coarser[0]])
+    of_details, of_both, focus = np.quantile(of_tiles, share, axis=1)
     contrast = np.sign(of_details) * np.sqrt(max(of_details * of_both, 0.0))
     return np.array([contrast, focus])

@@ -51,6 +51,13 @@ def test_terrain_that_left_the_image_is_in_no_square(terrain):
     assert not carried_back(down(60), image, away, 32)[2].any()
 
 
+def test_nothing_black_is_carried_from_beyond_the_image():
+    image = np.full(SIZE[::-1], 120, np.uint8)
+    for step in (np.zeros(3), STEP, -2 * STEP):
+        moved, _, known = carried_back(down(60), image, step, 32)
+        assert np.all(tiles(moved, 32)[known] == 120)
+
+
 def test_squares_at_the_horizon_are_not_known(terrain):
     camera, step = down(10), np.array([0.1, 0.0, 0.0])
     _, in_block, known = carried_back(camera, seen(terrain, camera), step, 16)

@@ -4,8 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
+from terrain.image_labels import details_watch
 from terrain.image_labels.details_watch import DetailsWatch
-from terrain.image_labels.slow_return import SlowReturn
+from terrain.image_labels.slow_return import LEARNT_M, SlowReturn
 from terrain.image_labels.terrain_details import TileDetails
 from tests.terrain.image_labels.test_still_image import PX_M, down
 from tests.terrain.image_labels.test_still_image import seen as shown
@@ -123,3 +124,44 @@ def test_labels_are_back_after_a_loss_that_ends_slowly_and_not_before(endless, c
     assert all(found[15:41])
     assert not found[-1]
     assert all(lost(endless, change, [*clear, *[1.0] * 51])[15:])
+
+
+def test_clear_images_are_not_compared_any_more_once_it_is_known_how_they_change(
+    endless, monkeypatch
+):
+    compared, compare = [], details_watch.change_of_details
+
+    def counted(*given):
+        compared.append(given)
+        return compare(*given)
+
+    monkeypatch.setattr(details_watch, "change_of_details", counted)
+    assert not any(lost(endless, fog, [0.0] * 75))
+    assert 0 <= len(compared) - round(LEARNT_M / (50 * PX_M)) <= 2
+    assert lost(endless, fog, [*[0.0] * 60, *[1.0] * 3, 0.0]) == [*[False] * 60, *[True] * 3, False]
+
+
+def test_fog_that_comes_over_images_close_together_is_noticed_then_as_well(endless):
+    watch, camera, found = DetailsWatch(down(50)), down(50), []
+    near_m = [0.02 * row for row in range(8)]
+    for way_m, share in zip(
+        [*np.arange(0.0, 12.0, 0.4), *(12.0 + np.array(near_m))],
+        [*[0.0] * 30, *np.minimum(np.arange(8) / 6, 1.0)],
+        strict=True,
+    ):
+        world = np.roll(endless, -round(way_m / PX_M), axis=1)
+        image = fog(shown(world, camera).astype(np.float32), share).astype(np.uint8)
+        found.append(watch.has_lost(image, np.array([way_m, 0.0, 0.0])))
+    assert found[-1]
+    assert not any(found[:32])
+
+
+def test_what_clear_images_do_later_teaches_no_more(image):
+    slow, details = SlowReturn(), TileDetails.of(image)
+    for _ in range(20):
+        slow.add_clear(details, 0.0, STEP_M)
+    assert slow.knows_clear
+    for _ in range(8):  # such as look like a loss in place
+        slow.add_clear(details, -0.2, STEP_M)
+    slow.begin(details, LOSS)
+    assert [slow.is_back(details, one, STEP_M) for one in GOES][-1]

@@ -5,7 +5,13 @@ import numpy as np
 import pytest
 
 from terrain.image_labels.details_watch import NEAR_M, DetailsWatch
-from terrain.image_labels.terrain_details import LOSS, WIDTH_PX, TileDetails, reduced
+from terrain.image_labels.terrain_details import (
+    LOSS,
+    WIDTH_PX,
+    TileDetails,
+    may_have_lost,
+    reduced,
+)
 from terrain.image_labels.terrain_details import change_of_details as change_from
 from tests.terrain.image_labels.test_still_image import SIZE, down
 from tests.terrain.image_labels.test_still_image import seen as shown
@@ -183,3 +189,27 @@ def test_what_shows_no_common_terrain_has_no_change(rng):
     camera = down(50)
     assert change_of_details(camera, image, image[:, ::2], np.zeros(3)) is None
     assert change_of_details(camera, image, image, np.array([50.0, 0.0, 0.0])) is None
+
+
+def may_lack(camera, *images):
+    return may_have_lost(camera, *(TileDetails.of(image) for image in images))
+
+
+def test_details_may_be_lost_where_an_image_shows_less_in_place(rough):
+    camera = down(50)
+    before, after = (shown(rough, camera, (x, 0, 0), noise=2) for x in (0.0, 0.3))
+    assert not may_lack(camera, before, after)
+    assert not may_lack(camera, before, 0.5 * after)
+    assert may_lack(camera, before, fog(after))
+    assert may_lack(camera, before, blurred(1.0)(after))
+    assert may_lack(camera, before, np.where(np.arange(320) < 120, fog(after), after))
+    assert may_lack(camera, before, after[:200])  # of another size
+    assert may_lack(camera, np.full_like(before, 90), np.full_like(before, 90))  # of no details
+
+
+def test_details_above_the_horizon_do_not_hide_a_loss(rough):
+    camera = down(-15)
+    image = shown(rough, camera)
+    lower = np.arange(240)[:, None] >= 192
+    assert may_lack(camera, image, np.where(lower, fog(image), image))
+    assert not may_lack(camera, image, np.where(lower, image, fog(image)))
