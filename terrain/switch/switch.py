@@ -165,8 +165,7 @@ class Switch:
                 unsupported_m=travel_m - self.supported_m,
                 event=None,
             )
-        points = se2.transform(pose, self.footprint.middle_and_points)
-        place, apart_m = self._under(self.place_beliefs, points, travel_m)
+        place, apart_m = self._under(self.place_beliefs, pose, travel_m)
         beliefs = carried(
             self.place_beliefs.beliefs[place], np.exp(-apart_m / self.config.change_m)[:, None]
         )
@@ -217,11 +216,15 @@ class Switch:
         return {name: share for name, share in shares.items() if share > 0}
 
     def _under(
-        self, place_beliefs: PlaceBeliefs, points: FloatArray, travel_m: float
+        self, place_beliefs: PlaceBeliefs, pose: FloatArray, travel_m: float
     ) -> tuple[IntArray, FloatArray]:
-        """The place at each point (m, 2) and its distance [m]; or the last, if at once."""
+        """The place at the middle and at points of the footprint, and its distance [m].
+
+        If labels count at once the last place, at the middle and at one point for all.
+        """
         if not self.config.on_arrival:
-            return np.full(len(points), len(place_beliefs.place_labels) - 1), np.zeros(len(points))
+            return np.full(2, len(place_beliefs.place_labels) - 1), np.zeros(2)
+        points = se2.transform(pose, self.footprint.middle_and_points)
         return nearest(points, place_beliefs.places, travel_m - place_beliefs.travel_m)
 
     def _before(self, oldest_m: float) -> str:
