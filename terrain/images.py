@@ -99,8 +99,9 @@ def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
         raise ImageError(f"{where}: {error}") from error
     if image.ndim == 2:
         return image
-    to_rgb = cv2.COLOR_BGR2RGB if image.shape[2] == 3 else cv2.COLOR_BGRA2RGB
-    return np.asarray(cv2.cvtColor(image, to_rgb), np.uint8)
+    if image.shape[2] == 4:
+        return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGRA2RGB), np.uint8)
+    return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB, image), np.uint8)  # in its place
 
 
 def to_grey(image: AnyArray) -> ByteImage:
