@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.evidence.measured_between import gaps_between
 from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.evidence.outliers import pose_outliers, without_spikes
 from odometry.checks.evidence.scatter import scattered
@@ -15,6 +16,7 @@ from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import touched
 
 LONGER_S = (1.0, 2.0)  # windows
+EMPTY = 1.5  # usual periods, from which cells between two yaw rates are empty
 MOST_OUTLIERS = 0.3  # share of the poses: where more are far from the others, none can be left out
 
 
@@ -72,6 +74,22 @@ class CleanedRecording:
         return found.stamps_s, without_spikes(found.yaw_rate_rad_s)
 
     @cached_property
+    def silent_s(self) -> FloatArray:
+        """Stamps (S, 2) between which the gyroscope was not measured while other rows go on.
+
+        Where odometry.csv has no rows either, it may be a log of changes, whose values hold.
+        """
+        if self.yaw_rate is None:
+            return np.empty((0, 2))
+        spans_s = gaps_between(self.yaw_rate[0])
+        return np.asarray(spans_s[self._rows_between(*spans_s.T)])
+
+    def _rows_between(self, begin_s: FloatArray, end_s: FloatArray) -> BoolArray:
+        """Whether rows of odometry.csv lie between two stamps (K,)."""
+        before = np.searchsorted(self.stamps_s, begin_s, side="right")
+        return np.asarray(np.searchsorted(self.stamps_s, end_s) > before)
+
+    @cached_property
     def gyroscope_file(self) -> str:
         """The file that holds the yaw rate."""
         found = self.run.yaw_rate
@@ -113,8 +131,16 @@ class CleanedRecording:
 
     @cached_property
     def integrals(self) -> Integrals:
-        """Tread travel and gyroscope heading."""
-        return integrals(self.run, self.speeds_m_s, self.yaw_rate)
+        """Tread travel and gyroscope heading; across empty cells a rate does not hold."""
+        rate = self.yaw_rate
+        if rate is not None:
+            stamps_s, rates = rate
+            lasts_s = np.diff(stamps_s)
+            lack = self._rows_between(stamps_s[:-1], stamps_s[1:])
+            lack &= lasts_s > EMPTY * np.median(lasts_s)
+            means = (rates[1:] + rates[:-1]) / 2
+            rate = stamps_s, np.append(np.where(lack, means, rates[:-1]), rates[-1])
+        return integrals(self.run, self.speeds_m_s, rate, self.silent_s)
 
     @cached_property
     def raw_motion(self) -> Motion:

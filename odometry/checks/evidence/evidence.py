@@ -45,12 +45,8 @@ def course_turns(motion: Motion, of: Integrals, width_m: float) -> tuple[Motion,
     begin_s, end_s = middle_s[rows], middle_s[rows + 1]
     turn = np.diff(motion.course_rad)[rows]
     turn = (turn + np.pi / 2) % np.pi - np.pi / 2
-    left, right, gyroscope = (
-        integral(end_s) - integral(begin_s)
-        for integral in (of.left_m, of.right_m, of.gyroscope_rad)
-    )
     nothing = np.full((len(rows), 2), np.nan)
-    between = Motion(begin_s, end_s, left, right, gyroscope, nothing, nothing)
+    between = Motion(begin_s, end_s, *of.between(begin_s, end_s), nothing, nothing)
     is_sharp = between.least_turn_rad(width_m) > np.pi / 2
     turn = np.where(is_sharp | (np.abs(turn) > MOST_RAD), np.nan, turn)
     return between, np.where(_correlated(between, turn), turn, np.nan)

@@ -6,6 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.windows.spans import touched
 
 LONGEST = 1.2  # times the length that was requested
 LEAST = 30  # spans
@@ -54,8 +55,8 @@ class HeadingSpans:
 def heading_spans(evidence: Evidence, *choices_s: float) -> HeadingSpans | None:
     """Spans of about so many seconds, one from each pose; None without gyroscope or yaw.
 
-    Spans that cross a change of `window`, a gap of the poses or what is left out are not there.
-    The first choice that leaves enough is taken: windows may be short.
+    Spans that cross a change of `window`, a gap of poses or gyroscope, or what is left out are not
+    there. The first choice that leaves enough is taken: windows may be short.
     """
     found = (_heading_spans(evidence, span_s) for span_s in choices_s)
     return next((spans for spans in found if spans is not None and len(spans) >= LEAST), None)
@@ -76,6 +77,7 @@ def _heading_spans(evidence: Evidence, span_s: float) -> HeadingSpans | None:
     first, last = first[last < len(rows)], last[last < len(rows)]
     whole = stamps_s[last] - stamps_s[first] < LONGEST * span_s
     whole &= ~evidence.left_out(stamps_s[first], stamps_s[last])
+    whole &= ~touched(evidence.silent_s, stamps_s[first], stamps_s[last])
     if "window" in pose:
         window = np.nan_to_num(pose["window"][rows])
         whole &= window[first] == window[last]

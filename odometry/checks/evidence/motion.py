@@ -8,6 +8,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.run import Run
+from odometry.windows.spans import touched
 
 WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn
 LONGEST = (
@@ -102,15 +103,35 @@ class Integrals:
     ----------
     left_m, right_m, gyroscope_rad : callable of stamps (K,) to (K,)
         The last one gives NaN where no gyroscope was recorded.
+    silent_s : (S, 2)
+        Stamps between which the gyroscope says nothing. Differences across them are no turns.
     """
 
     left_m: Callable[[FloatArray], FloatArray]
     right_m: Callable[[FloatArray], FloatArray]
     gyroscope_rad: Callable[[FloatArray], FloatArray]
+    silent_s: FloatArray
+
+    def between(
+        self, begin_s: FloatArray, end_s: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Left and right travel and turn by the gyroscope (K,) from stamps (K,) to others.
+
+        The turn is NaN where the gyroscope was silent for a while in between.
+        """
+        left_m, right_m, turn_rad = (
+            integral(end_s) - integral(begin_s)
+            for integral in (self.left_m, self.right_m, self.gyroscope_rad)
+        )
+        silent = touched(self.silent_s, begin_s, end_s)
+        return left_m, right_m, np.where(silent, np.nan, turn_rad)
 
 
 def integrals(
-    run: Run, speeds_m_s: FloatArray, yaw_rate: tuple[FloatArray, FloatArray] | None
+    run: Run,
+    speeds_m_s: FloatArray,
+    yaw_rate: tuple[FloatArray, FloatArray] | None,
+    silent_s: FloatArray,
 ) -> Integrals:
     """Integrals of held values.
 
@@ -120,12 +141,16 @@ def integrals(
     speeds_m_s : (N, 2)
         Tread speeds without spikes, at the stamps of odometry.csv.
     yaw_rate : (stamps (G,), rad/s (G,)) or None
+    silent_s : (S, 2)
+        Stamps of the yaw rate between which it says nothing.
     """
     stamps_s = run.odometry.stamps_s
+    turned = _held(*yaw_rate) if yaw_rate is not None else lambda s: np.full(len(s), np.nan)
     return Integrals(
         _held(stamps_s, speeds_m_s[:, 0]),
         _held(stamps_s, speeds_m_s[:, 1]),
-        _held(*yaw_rate) if yaw_rate is not None else lambda s: np.full(len(s), np.nan),
+        lambda at_s: np.where(touched(silent_s, at_s, at_s), np.nan, turned(at_s)),
+        silent_s,
     )
 
 
@@ -185,11 +210,7 @@ def _between_poses(run: Run, of: Integrals, rows: IntArray, window_s: float) -> 
 def _window(
     start_s: FloatArray, end_s: FloatArray, of: Integrals, moved: FloatArray, yaw: FloatArray
 ) -> Motion:
-    left, right, gyroscope = (
-        integral(end_s) - integral(start_s)
-        for integral in (of.left_m, of.right_m, of.gyroscope_rad)
-    )
-    return Motion(start_s, end_s, left, right, gyroscope, moved, yaw)
+    return Motion(start_s, end_s, *of.between(start_s, end_s), moved, yaw)
 
 
 def _spaced(pose_s: FloatArray, rows: IntArray, apart_s: float) -> IntArray:

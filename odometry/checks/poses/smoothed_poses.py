@@ -7,7 +7,9 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.findings.finding import Finding, Level
+from odometry.windows.spans import touched
 
 GRID_S = 0.05
 SMOOTHED_S = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)  # slip on ice and wind look like the longest
@@ -60,7 +62,8 @@ def _yaw_is_smooth(evidence: Evidence, over_s: float) -> bool:
     begin_s, end_s = max(stamps_s[0], evidence.stamps_s[0]), evidence.stamps_s[-1]
     grid_s = np.arange(begin_s, min(stamps_s[-1], end_s), GRID_S)
     heading = evidence.integrals.gyroscope_rad(grid_s)[None, :]
-    measured, step, margin = np.interp(grid_s, stamps_s, yaw), int(TURN_S / GRID_S), over_s / 2
+    measured = measured_between(grid_s, stamps_s, yaw)
+    step, margin = int(TURN_S / GRID_S), over_s / 2
     inside = slice(int(margin / GRID_S) + 1, len(grid_s) - int(margin / GRID_S) - 1)
     plain, smooth = (
         float(np.nanstd(off[step:] - off[:-step]))
@@ -79,7 +82,9 @@ def _distances(
     path = _path(evidence, grid_s)
     margin_s = SMOOTHED_S[-1] / 2 + GRID_S
     edges_s = np.arange(begin_s + margin_s, end_s - margin_s, STRETCH_S)
-    parts = [used & (stamps_s >= a) & (stamps_s < b) for a, b in pairwise(edges_s)]
+    silent = touched(evidence.silent_s, edges_s[:-1] - margin_s, edges_s[1:] + margin_s)
+    spans_s = [span for span, lost in zip(pairwise(edges_s), silent, strict=True) if not lost]
+    parts = [used & (stamps_s >= a) & (stamps_s < b) for a, b in spans_s]
     parts = [
         part
         for part in parts

@@ -85,9 +85,10 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
 def _steps(evidence: Evidence, stamps_s: FloatArray, off_rad: FloatArray) -> FloatArray:
     """`step_sizes` (M,) of yaw less gyroscope; NaN where the gyroscope was not recorded."""
     step = step_sizes(stamps_s, np.stack([off_rad, np.zeros_like(off_rad)], axis=-1))
+    gaps_s = evidence.silent_s
     if evidence.gyroscope_file == "odometry.csv":
-        gaps_s = odometry_gaps(evidence.run).spans_s
-        step[within(stamps_s, gaps_s + np.array([-FAR_S, FAR_S]))] = np.nan
+        gaps_s = np.concatenate([gaps_s, odometry_gaps(evidence.run).spans_s])
+    step[within(stamps_s, gaps_s + np.array([-FAR_S, FAR_S]))] = np.nan
     return step
 
 

@@ -3,13 +3,14 @@
 The course would say more, but an antenna ahead of the centre turns it before the robot turns.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag, Rate, lag_of_rates
+from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.evidence.motion import WIDTH
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import changed
@@ -31,6 +32,7 @@ CORRELATED, GOING = 0.9, 0.8  # of the speeds; m for each metre of the treads
 # Between positions and yaw; real recordings whose treads hold have at most 0.22 s with four pieces
 # or more, one of three pieces 0.4.
 LEAST_APART_S, MOST_APART_S, LEAST_PIECES = 0.3, 1.5, 4
+Between = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]  # at, stamps, values
 MOST_LOST = 0.1  # of the recording: speeds held in gaps of the odometry are of another time
 
 
@@ -126,24 +128,28 @@ def _speed_lag(evidence: Evidence, most_s: float) -> Lag | None:
     stamps_s = pose.stamps_s[used]
     period_s = max(float(np.median(np.diff(stamps_s))), evidence.period_s)
     return lag_of_rates(
-        _speed(stamps_s, pose.stack("x", "y")[used]),
-        _speed(evidence.stamps_s, _reckoned_m(evidence)),
+        _speed(stamps_s, pose.stack("x", "y")[used], measured_between),
+        _speed(evidence.stamps_s, _reckoned_m(evidence), _held_between),
         (float(evidence.stamps_s[0]), float(evidence.stamps_s[-1])),
         max(LEAST_WIDTH_S, 2 * period_s),
         most_s,
     )
 
 
-def _speed(stamps_s: FloatArray, positions_m: FloatArray) -> Rate:
+def _speed(stamps_s: FloatArray, positions_m: FloatArray, between: Between) -> Rate:
     """Distance between the positions (M, 2) at both ends of a width, over the width."""
 
     def at(at_s: FloatArray) -> FloatArray:
-        columns = [np.interp(at_s, stamps_s, c, left=np.nan, right=np.nan) for c in positions_m.T]
-        return np.stack(columns, axis=-1)
+        return np.stack([between(at_s, stamps_s, column) for column in positions_m.T], axis=-1)
 
     return lambda at_s, width_s: np.asarray(
         np.hypot(*(at(at_s + width_s / 2) - at(at_s - width_s / 2)).T) / width_s
     )
+
+
+def _held_between(at_s: FloatArray, stamps_s: FloatArray, values: FloatArray) -> FloatArray:
+    """Of speeds, which hold until the next stamp: no step is a gap. NaN outside."""
+    return np.asarray(np.interp(at_s, stamps_s, values, left=np.nan, right=np.nan))
 
 
 def _reckoned_m(evidence: Evidence) -> FloatArray:

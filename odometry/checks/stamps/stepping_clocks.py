@@ -5,11 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.measured_between import gaps_between
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import stamps_moved
 from odometry.checks.stamps.late_stamps import CLEARLY
-from odometry.checks.stamps.rates_by_delay import left_by_any_growing, moment_of, two_delays
+from odometry.checks.stamps.rates_by_delay import (
+    PARTS,
+    left_by_any_growing,
+    moment_of,
+    two_delays,
+)
 from odometry.checks.stamps.set_clocks import left_by_delays
 from odometry.checks.stamps.timing import headings_by_sensor
 
@@ -24,6 +31,7 @@ DIFFER = 0.02  # share of the turns not explained, below which two sensors agree
 # with 0.83; where clocks were set it was 0.92 and more, and 0.05 s and less.
 HELD, ON_TIME_S = 0.87, 0.2
 GROWTHS_S = np.linspace(-2.5, 2.5, 21)  # of a lag that grows over the recording
+NEAR_PARTS = 2.0  # of the time, within which the moment of a step is known
 
 
 @dataclass(frozen=True)
@@ -59,7 +67,9 @@ def stepping_clocks(evidence: Evidence) -> Iterator[Finding]:
     by_s = step.of(file, files)
     against = sorted(set.union(*stepping) - {file})
     either = "" if len(common) == 1 else f" or of {common[1]}"
-    moment_s = evidence.run_time_s(step.at_s)
+    table = file.removesuffix(".csv")
+    at_s = _at_a_gap(evidence, getattr(evidence.run, table).stamps_s, step.at_s)
+    moment_s = evidence.run_time_s(at_s)
     yield Finding(
         "clock_set",
         Level.WARNING,
@@ -69,8 +79,15 @@ def stepping_clocks(evidence: Evidence) -> Iterator[Finding]:
         "stamps of the others made up",
         f"Subtract {by_s:.2f} s from the later stamps of {file}, or cut with --from and --to",
         ((moment_s, moment_s),),
-        mend=stamps_moved(file.removesuffix(".csv"), step.at_s, -by_s),
+        mend=stamps_moved(table, at_s, -by_s),
     )
+
+
+def _at_a_gap(evidence: Evidence, stamps_s: FloatArray, at_s: float) -> float:
+    """The last stamp (N,) before a gap near a moment: a clock that is set ahead leaves one."""
+    begins_s = gaps_between(stamps_s)[:, 0]
+    near_s = begins_s[np.abs(begins_s - at_s) < NEAR_PARTS * evidence.duration_s / PARTS]
+    return float(near_s[np.argmin(np.abs(near_s - at_s))]) if len(near_s) else at_s
 
 
 def _apart(evidence: Evidence) -> Iterator[tuple[str, str]]:

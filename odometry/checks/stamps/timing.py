@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.lag import Lag, Signal, lag_between
+from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.findings.finding import Finding
 from odometry.checks.imu.gyroscope import held_s
 from odometry.checks.stamps.late_stamps import (
@@ -92,12 +93,8 @@ def headings_by_sensor(evidence: Evidence) -> dict[str, Signal]:
         known = np.isfinite(yaw) & evidence.poses_used
         stamps_s = evidence.run.pose.stamps_s[known]
         heading = np.unwrap(np.radians(yaw[known]) if evidence.yaw_in_degrees else yaw[known])
-        found["pose"] = lambda at_s: _between(at_s, stamps_s, heading)
+        found["pose"] = lambda at_s: measured_between(at_s, stamps_s, heading)
     return found
-
-
-def _between(at_s: FloatArray, stamps_s: FloatArray, heading: FloatArray) -> FloatArray:
-    return np.asarray(np.interp(at_s, stamps_s, heading, left=np.nan, right=np.nan))
 
 
 def pose_period_s(evidence: Evidence) -> float:

@@ -175,18 +175,22 @@ def _fits(
 ) -> ComplexArray:
     """Complex correlations (K,) over spans, each overlapping the next by half.
 
-    NaN where the robot drove less than positions can show, or the span is left out.
+    NaN where the robot drove less than positions can show, a turn is not known, or the span is left
+    out.
     """
     of, count = evidence.integrals, round(PATH_SPAN_S / STEP_S)
     steps_m = np.diff((of.left_m(at_s) + of.right_m(at_s)) / 2)
     middle = (yaw_rad[1:] + yaw_rad[:-1]) / 2
-    reckoned = np.append(0.0, np.cumsum(steps_m * np.exp(1j * middle)))
+    unknown = np.isnan(middle)
+    reckoned = np.append(0.0, np.cumsum(steps_m * np.exp(1j * np.nan_to_num(middle))))
     first = np.arange(0, len(at_s) - count, count // 2)
     left_out = evidence.left_out(at_s[first], at_s[first + count - 1])
     noise_m = TIMES_NOISE * evidence.position_sigma_m * np.sqrt(count)
     fits = np.full(len(first), np.nan, dtype=np.complex128)
     for k in np.flatnonzero(~left_out):
         chosen = slice(first[k], first[k] + count)
+        if unknown[chosen].any():
+            continue
         one, other = (path[chosen] - path[chosen].mean() for path in (reckoned, measured))
         driven_m = np.abs(steps_m[first[k] : first[k] + count - 1]).sum()
         sizes = np.linalg.norm(one), np.linalg.norm(other)
