@@ -20,6 +20,7 @@ from odometry.checks.imu.gyroscope import gyroscope
 from odometry.checks.imu.gyroscope_by_poses import gyroscope_scale
 from odometry.checks.imu.rate_wander import headings_wander
 from odometry.checks.imu.turning import turning
+from odometry.checks.parts.part_changes import part_changes
 from odometry.checks.poses.coarse_yaw import coarse_yaw
 from odometry.checks.poses.compass_error import bent
 from odometry.checks.poses.course import course
@@ -72,6 +73,7 @@ CHECKS: tuple[Check, ...] = (
     pose_values,
     coarse_yaw,
     smoothed_poses,
+    part_changes,
     agreement,
     yaw_against_course,
     turning,

@@ -23,6 +23,7 @@ CATALOGUE: dict[str, str] = {
     "recordings_joined": "poses that begin anew at rest: two files joined, or a carried robot",
     "one_motion": "a drive that only goes straight, spins, or is one circle",
     "sensors_disagree": "sensors differ, and the cause cannot be determined",
+    "changed_in_part": "a unit, a sign or the order of columns that changes while recording",
     # Treads
     "tread_unit": "tread speeds in rad/s, RPM, mm/s, ticks ...",
     "scale": "tread speeds or positions scaled",

@@ -1,0 +1,1 @@
+"""Faults of a part of a recording: another unit, a sign, exchanged columns, rounding."""
