@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Level
 from odometry.checks.findings.undo import changed, in_turn
+from odometry.checks.recording import check_recording
 from odometry.checks.treads.scale_change import scale_change
 from tests.odometry.checks.drives import winding
-from tests.odometry.checks.faulty import without_gyroscope
+from tests.odometry.checks.faulty import treads, without_gyroscope
 
 
 def later(run, v_left, v_right):
@@ -50,3 +52,22 @@ def test_treads_that_read_zero_on_one_side_have_no_other_scale(part):
         changed("odometry", "v_right", lambda v: zero * v),
     )(run)
     assert not list(scale_change(Evidence(frozen)))
+
+
+SPAN_S = (31.2, 74.9)
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(3.6, "km/h"), (1000.0, "mm/s")])
+def test_another_unit_for_a_while_is_named_with_its_moments(factor, unit):
+    run = winding()
+    t = run.odometry.stamps_s
+    scale = np.where((t >= SPAN_S[0]) & (t < SPAN_S[1]), factor, 1.0)
+    wrong = treads(run, lambda left, right: (scale * left, scale * right))
+    (found,) = check_recording(wrong).at(Level.WARNING)
+    assert found.name == "tread_scale_changed"
+    assert found.cause.startswith(f"From about 31 s to 75 s tread speeds are in {unit}")
+    moments_s = [moment for moment, _ in found.spans_s]
+    assert moments_s == pytest.approx(SPAN_S, abs=0.1)
+    np.testing.assert_allclose(
+        found.mend(wrong).odometry["v_left"], run.odometry["v_left"], rtol=0.1
+    )
