@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import headings
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import times
-from odometry.checks.poses.map_lines import drawn_to_lines
+from odometry.checks.poses.coarse_positions import coarse_positions
 from odometry.checks.poses.position_noise import noisy_positions
 from odometry.checks.units.unit_findings import beyond_treads
-from odometry.positions.rounding import steps_m
 from odometry.windows.interpolated import FEWEST, MOST, interpolated, line_ends, on_lines
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
@@ -21,7 +20,6 @@ MAP_M = 1e5  # coordinates above are of a map of the country (UTM)
 EQUATOR_M, WEB_MAP_M = 6_378_137.0, 2.004e7  # radius, and half the width of such a map
 FARTHEST = 1.1  # m for each metre of the treads: no robot goes farther
 STRETCHED = (0.75, 1.1)  # the same, of positions whose stretch is undone
-COARSE_M = 0.02
 CUTS_RAD = 0.1  # turn on a line between two poses, that the line does not show
 SAME_RAD = 0.003  # yaw and course this near are one thing written twice
 OF_NOISE = 0.5  # of the noise of the course by its third differences, that such a yaw has
@@ -37,7 +35,7 @@ def pose_values(evidence: Evidence) -> Iterator[Finding]:
     positions, stamps_s = pose.stack("x", "y")[rows], pose.stamps_s[rows]
     yield from _frame(evidence, positions)
     new = np.concatenate([[True], (np.diff(positions, axis=0) != 0).any(axis=1)])
-    yield from _coarse(stamps_s, positions, new)
+    yield from coarse_positions(evidence, stamps_s, positions)
     yield from _interpolated(evidence, stamps_s, positions)
     yield from noisy_positions(evidence, stamps_s[new], positions[new])
     if evidence.yaw_measured:
@@ -103,26 +101,6 @@ def _of_web_map(evidence: Evidence, middle_m: FloatArray) -> Finding | None:
         ),
         mend=times("pose", 1 / stretch, "x", "y"),
     )
-
-
-def _coarse(stamps_s: FloatArray, positions: FloatArray, new: BoolArray) -> Iterator[Finding]:
-    step_m = steps_m(stamps_s, positions).max()
-    if step_m > COARSE_M and drawn_to_lines(positions[new]):
-        yield _finding(
-            "positions_on_lines",
-            "nearly each position has an x or a y of few values, and the other one is free",
-            "Positions are drawn to the lines of a map (a network of roads or lanes)",
-            "Record positions before they are matched to a map",
-        )
-    elif step_m > COARSE_M:
-        yield _finding(
-            "coarse_positions",
-            f"positions come in steps of {step_m:.3g} m",
-            "Positions are rounded: single precision (float32) of large coordinates, or too few "
-            "digits in the log; or they are drawn to the cells or the lines of a map",
-            "Write positions in double precision, relative to the start; `run` and `batch` take "
-            "the steps as noise",
-        )
 
 
 def _interpolated(

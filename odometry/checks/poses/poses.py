@@ -10,6 +10,7 @@ from odometry.checks.evidence.relation import pieces, relation
 from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import moved
+from odometry.checks.poses.coarse_part import coarse_part
 from odometry.checks.poses.course import OFF_RAD
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
@@ -30,8 +31,13 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     if evidence.positions_measured is None or evidence.run.pose is None:
         return
     yield from _outliers(evidence)
+    all_stamps_s = evidence.run.pose.stamps_s
     rows = np.flatnonzero(evidence.positions_measured & ~evidence.pose_outliers)
-    stamps_s = evidence.run.pose.stamps_s[rows]
+    known = (all_stamps_s >= evidence.stamps_s[0]) & (all_stamps_s <= evidence.stamps_s[-1])
+    of_yaw = rows[known[rows]]
+    if coarse := coarse_part(evidence):  # its positions seem to be held, and to jump
+        rows = rows[~coarse.span.holds(all_stamps_s[rows])]
+    stamps_s = all_stamps_s[rows]
     positions = evidence.run.pose.stack("x", "y")[rows]
     travel_m = evidence.travel_m(stamps_s)
     track = PoseTrack(stamps_s, positions, travel_m)
@@ -40,16 +46,19 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from repeated or frozen
     yield from pose_bursts(evidence, track)
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
-    known = (stamps_s >= evidence.stamps_s[0]) & (stamps_s <= evidence.stamps_s[-1])  # treads
-    rows, travel_m = rows[known], travel_m[known]
-    yield from yaw_jumps(evidence, rows)
+    yield from yaw_jumps(evidence, of_yaw)
     yield from _lever_arm(evidence)
-    yield from jumps(evidence, rows, travel_m, np.array(spans_s).reshape(-1, 2))
+    inside = known[rows]  # of the time of the treads
+    yield from jumps(evidence, rows[inside], travel_m[inside], np.array(spans_s).reshape(-1, 2))
 
 
 def _outliers(evidence: Evidence) -> Iterator[Finding]:
     pose, found = evidence.run.pose, np.flatnonzero(evidence.pose_outliers)
-    if pose is None or evidence.positions_measured is None or not len(found):
+    if pose is None or evidence.positions_measured is None:
+        return
+    if coarse := coarse_part(evidence):
+        found = found[~coarse.span.holds(pose.stamps_s[found])]
+    if not len(found):
         return
     measured = np.flatnonzero(evidence.positions_measured)
     beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
