@@ -59,7 +59,7 @@ class Compared:
 def changed_span(evidence: Evidence, change: Change) -> Span | None:
     """The span with the most to gain from undoing a change; None where it is not clear."""
     other, windows = _beside(evidence, change.sensor)
-    if other == change.sensor:
+    if other == change.sensor or _has_lost_its_sign(evidence, change):
         return None
     turns, others = (_turns(windows, sensor) for sensor in (change.sensor, other))
     undone = _turns(change.motion(windows), change.sensor)
@@ -86,6 +86,16 @@ def _beside(evidence: Evidence, sensor: str) -> tuple[str, Motion]:
     others = [*["gyroscope"] * (evidence.yaw_rate is not None), *["pose"] * evidence.yaw_measured]
     other = next((of for of in others if of != sensor), "treads")
     return other, evidence.raw_motion if "pose" in (sensor, other) else evidence.uniform
+
+
+def _has_lost_its_sign(evidence: Evidence, change: Change) -> bool:
+    """Whether a column whose sign would change is never negative: it may hold a size instead."""
+    if change.sensor == "pose" or (change.sensor == "gyroscope" and evidence.yaw_rate is None):
+        return False  # yaw may be written from 0 to a full turn
+    recorded = change.columns(evidence.run, change.table(evidence.gyroscope_file))
+    unknown = np.isnan(recorded)
+    turned = (unknown | (change.undo(recorded) == -recorded)).all(axis=1)
+    return bool((turned & (unknown | (recorded >= 0)).all(axis=1)).any())
 
 
 def _turns(of: Motion, sensor: str) -> FloatArray:

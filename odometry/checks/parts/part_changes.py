@@ -60,7 +60,7 @@ def _finding(evidence: Evidence, alike: Sequence[Candidate]) -> Finding:
         "changed_in_part",
         Level.WARNING,
         f"{best.span.words(began_s)} the turns of {_name(best.change)} differ from those of the "
-        "other sensors, and elsewhere they do not; with the cause undone there all agree",
+        "other sensors, and elsewhere they do not",
         cause[:1].upper() + cause[1:],
         best.change.remedy,
         (best.span.run_time_s(began_s, evidence.duration_s),),

@@ -11,7 +11,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.parts.part_changes import part_changes
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.answers import warnings
-from tests.odometry.checks.drives import to_and_fro, varied
+from tests.odometry.checks.drives import drive, to_and_fro, varied
 from tests.odometry.checks.faulty import gyroscope, put, treads, without_gyroscope, yaw
 
 SPANS = {"on": (71.3, np.inf), "until": (-np.inf, 88.8), "between": (63.2, 131.7)}
@@ -100,6 +100,16 @@ def test_nothing_changes_in_a_clean_drive(make, seed):
 @pytest.mark.parametrize("words", FAULTS)
 def test_a_whole_recording_has_the_name_that_it_had(words):
     assert "changed_in_part" not in warnings(FAULTS[words](varied(), (-np.inf, np.inf)))
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_tread_that_is_never_negative_may_have_lost_its_sign(side):
+    """Where the robot drives backwards for a while that is the opposite sign as well."""
+    at_s = 0.05 * np.arange(4000)
+    way = np.where((at_s > 70) & (at_s < 130), -1.0, 1.0)
+    run = drive(way * (0.8 + 0.1 * np.sin(at_s)), 0.4 * np.sin(at_s / 3))
+    sizes = treads(run, lambda *both: [np.abs(v) if i == side else v for i, v in enumerate(both)])
+    assert list(part_changes(Evidence(sizes))) == []
 
 
 def test_turns_of_another_recording_have_no_change(rng):
