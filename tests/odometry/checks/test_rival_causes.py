@@ -130,14 +130,17 @@ def test_an_offset_of_yaw_must_hold_at_every_place():
     assert "yaw_offset" not in warnings(twisted)
 
 
-def test_treads_that_are_exchanged_in_a_part_are_a_disagreement():
+def test_treads_that_are_exchanged_in_a_part_have_no_cause_of_the_whole():
     run = turning_all_round()
     late = second_part(run, since=0.7)
     run = treads(
         run, lambda left, right: (np.where(late, right, left), np.where(late, left, right))
     )
     assert turns_flip(Evidence(run))
-    assert list(warnings(run)) == ["sensors_disagree"]
+    (found,) = warnings(run).values()
+    assert found.name == "changed_in_part"
+    assert found.cause.endswith("s on left and right treads are exchanged")
+    assert found.spans_s[0][0] == pytest.approx(0.7 * np.ptp(run.odometry["t"]), abs=0.5)
 
 
 def test_gyroscope_that_holds_the_change_of_the_turn_makes_no_counters():
