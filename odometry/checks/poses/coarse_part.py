@@ -11,10 +11,7 @@ from odometry.checks.parts.span import Span, best_rows
 from odometry.positions.rounding import FEWEST_CHANGES, MANY_CHANGES, REPEATED
 
 COARSE_M = 0.02
-CANDIDATES, OFTEN = (
-    5,
-    3,
-)  # changes of a coordinate that are tried as the step, and how often each is
+CANDIDATES, OFTEN = 5, 3  # changes of a coordinate tried as the step, and how often each is there
 WHOLE = 0.02  # of a step, by which a change may be off a multiple
 ON_GRID, ELSEWHERE = 0.98, 0.3  # share of the changes in the part, at least, and outside, at most
 FEWEST_POSES = 20  # of which there must be some
