@@ -2,7 +2,7 @@
 
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import treads_times
-from odometry.checks.units.unit_tables import ORDINARY_FORWARD, of_wheels
+from odometry.checks.findings.unit_tables import ORDINARY_FORWARD, of_wheels
 
 
 def slip_along(seen: str, tight: bool) -> Finding:

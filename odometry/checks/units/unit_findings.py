@@ -9,7 +9,7 @@ from odometry.checks.evidence.relation import relation
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import gyroscope_times, times, treads_times
-from odometry.checks.units.unit_tables import (
+from odometry.checks.findings.unit_tables import (
     COUNTS,
     EQUAL,
     ORDINARY_FORWARD,

@@ -11,6 +11,17 @@ from odometry.checks.evidence.relation import Relation, pieces
 from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import times
+from odometry.checks.findings.unit_tables import (
+    COUNTS,
+    HOLDS,
+    ORDINARY_FORWARD,
+    POSITION_UNITS,
+    RARE,
+    SLIPS,
+    counts,
+    matching,
+    tread_units,
+)
 from odometry.checks.treads.proportion import holds_the_mean
 from odometry.checks.units.constant_along import reads_less, turns_less
 from odometry.checks.units.effective_width import (
@@ -29,17 +40,6 @@ from odometry.checks.units.unit_findings import (
     too_fast,
     track_against_body,
     tread_unit,
-)
-from odometry.checks.units.unit_tables import (
-    COUNTS,
-    HOLDS,
-    ORDINARY_FORWARD,
-    POSITION_UNITS,
-    RARE,
-    SLIPS,
-    counts,
-    matching,
-    tread_units,
 )
 
 # Robots that were measured move 0.75 to 1.05 times as far as their treads where the terrain holds,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry import check_recording
-from odometry.checks.units.unit_tables import Unit, as_likely
+from odometry.checks.findings.unit_tables import Unit, as_likely
 from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import positions, put, treads
 

@@ -8,11 +8,11 @@ import pytest
 from odometry.checks.confirmed import alone
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.findings.unit_tables import POSITION_UNITS, matching
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.sides import sides
 from odometry.checks.units.factor_along import farther_along, slip_along
 from odometry.checks.units.unit_findings import gyroscope_unit
-from odometry.checks.units.unit_tables import POSITION_UNITS, matching
 from odometry.checks.units.units import ONE_AXIS_STRETCHED
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import (

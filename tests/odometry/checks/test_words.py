@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from odometry.checks.findings.unit_tables import Unit, tread_units
 from odometry.checks.poses.poses import _place
 from odometry.checks.units.unit_findings import tread_unit
-from odometry.checks.units.unit_tables import Unit, tread_units
 
 
 def causes(unit, radius_m):
