@@ -1,6 +1,6 @@
 """Bias, range and axis of the gyroscope."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -20,6 +20,7 @@ CLIPPED = 0.01  # share of rows at the very largest rate
 LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
 HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
 DEAD_S = 1.0
+SAME = 1e-9  # rad/s
 FAR_FROM_ZERO = 10.0  # times the step between other rates: none is smaller
 LEAST_HOLDS, LONG_HOLD_S = 20, 0.3  # from which a rate that is held makes headings late
 EVEN = 1.5  # ratio of a long to a short hold below which they have one pace
@@ -92,7 +93,7 @@ def _clipped(evidence: Evidence) -> Iterator[Finding]:
     assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     rates = evidence.yaw_rate[1]
     largest = float(np.abs(rates).max())
-    at_top = np.abs(np.abs(rates) - largest) < 1e-9
+    at_top = np.abs(np.abs(rates) - largest) < SAME
     lively = len(np.unique(np.round(rates[~at_top], 6))) > LIVELY
     if largest > 0 and at_top.mean() > CLIPPED and at_top.sum() > 10 and lively:
         yield Finding(
@@ -151,13 +152,40 @@ def _dead(evidence: Evidence) -> Iterator[Finding]:
     if not odd:
         return
     lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+    spans_s = tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd)
+    if limit := _limit(evidence, odd):
+        if not any(_clipped(evidence)):
+            yield Finding(
+                "gyroscope_clipped",
+                Level.WARNING,
+                f"gyro_z is exactly +{limit:.4g} or -{limit:.4g} rad/s for {lasts_s:.1f} s while "
+                "the treads turn the robot, and less between",
+                "The gyroscope is clipped (saturates) in a part: its full-scale range is too small",
+                "Choose a larger range; do not use these rows",
+                spans_s,
+            )
+        return
     yield Finding(
         "gyroscope_dead",
         Level.WARNING,
         f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
         _dead_zone(evidence) or "The gyroscope is stuck or was lost",
         "Leave gyro_z empty there",
-        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+        spans_s,
+    )
+
+
+def _limit(evidence: Evidence, spans_s: Sequence[FloatArray]) -> float:
+    """The size of rates that are held in spans (2,), if it is one, reached to both sides; else 0.
+
+    A gyroscope that is stuck holds one value, and no other side of it.
+    """
+    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
+    stamps_s, rates = evidence.yaw_rate
+    held = rates[np.searchsorted(stamps_s, [begin_s for begin_s, _ in spans_s])]
+    limit = float(held.max())
+    return (
+        limit if limit > 0 and np.abs(np.abs(held) - limit).max() < SAME and held.min() < 0 else 0.0
     )
 
 
