@@ -142,6 +142,7 @@ def rounded(recording, rng, span_s):
 
 
 YAW, PLACE, RATE = ("pose", ("yaw",)), ("pose", ("x", "y", "yaw")), ("odometry", ("gyro_z",))
+SCALED = ("times the motion of", "unit", "scale")
 TURNED = ("sign", "negat", "revers", "direction", "opposite", "backward")
 # fmt: off
 FAULTS = {fault.key: fault for fault in (
@@ -165,6 +166,9 @@ FAULTS = {fault.key: fault for fault in (
     PartFault("yaw_reversed", times(*YAW, -1.0), TURNED),
     PartFault("rate_reversed", times(*RATE, -1.0), TURNED),
     PartFault("side_reversed", one_side(-1.0), TURNED),
+    PartFault("side_half", one_side(0.5), SCALED),
+    PartFault("side_less", one_side(0.3), SCALED),
+    PartFault("side_double", one_side(2.0), SCALED),
     PartFault("treads_reversed", times("odometry", TREADS, -1.0), TURNED),
     PartFault("treads_exchanged", exchanged, ("exchanged", "swapped")),
     PartFault("place_rounded", rounded, ("rounded",)),

@@ -58,11 +58,11 @@ class Compared:
 
 def changed_span(evidence: Evidence, change: Change) -> Span | None:
     """The span with the most to gain from undoing a change; None where it is not clear."""
-    other, windows = _beside(evidence, change.sensor)
+    other, windows = beside(evidence, change.sensor)
     if other == change.sensor or _has_lost_its_sign(evidence, change):
         return None
-    turns, others = (_turns(windows, sensor) for sensor in (change.sensor, other))
-    undone = _turns(change.motion(windows), change.sensor)
+    turns, others = (turns_of(windows, sensor) for sensor in (change.sensor, other))
+    undone = turns_of(change.motion(windows), change.sensor)
     known = np.flatnonzero(np.isfinite(turns) & np.isfinite(undone) & np.isfinite(others))
     if len(known) < LEAST_WINDOWS:
         return None
@@ -81,7 +81,7 @@ def changed_span(evidence: Evidence, change: Change) -> Span | None:
     return _exact(evidence, change, windows.rows(known), found)
 
 
-def _beside(evidence: Evidence, sensor: str) -> tuple[str, Motion]:
+def beside(evidence: Evidence, sensor: str) -> tuple[str, Motion]:
     """The sensor whose turns tell more of this one, and windows of both; itself without one."""
     others = [*["gyroscope"] * (evidence.yaw_rate is not None), *["pose"] * evidence.yaw_measured]
     other = next((of for of in others if of != sensor), "treads")
@@ -98,7 +98,7 @@ def _has_lost_its_sign(evidence: Evidence, change: Change) -> bool:
     return bool((turned & (unknown | (recorded >= 0)).all(axis=1)).any())
 
 
-def _turns(of: Motion, sensor: str) -> FloatArray:
+def turns_of(of: Motion, sensor: str) -> FloatArray:
     """Turns (K,) in rad, of the treads in m."""
     if sensor == "treads":
         return of.difference_m

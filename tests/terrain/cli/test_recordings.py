@@ -22,14 +22,14 @@ VERBS = ("run", "batch", "identify", "compare", "gap", "identify_modes", "modes"
 
 @pytest.mark.parametrize("name", VERBS)
 def test_every_verb_that_reads_runs_has_both_options(name):
-    verb = getattr(import_module(f"terrain.cli.{name}"), name)
+    verb = getattr(import_module(f"terrain.cli.verbs.{name}"), name)
     options = {word for parameter in verb.params for word in parameter.opts}
     assert {"--from", "--to"} <= options
 
 
 @pytest.mark.parametrize("name", VERBS)
 def test_no_verb_reads_a_run_by_itself(name):
-    text = Path(import_module(f"terrain.cli.{name}").__file__).read_text()
+    text = Path(import_module(f"terrain.cli.verbs.{name}").__file__).read_text()
     assert "Run.read" not in text
 
 
