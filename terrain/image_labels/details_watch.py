@@ -52,18 +52,18 @@ class DetailsWatch:
             return False
         earlier, was = self._before
         step = se2.between(was, pose)
-        looks = self._is_worth_a_look(earlier, details)
-        change = change_of_details(self._camera, earlier, image, step) if looks else None
+        compared = self._is_compared(earlier, details)
+        change = change_of_details(self._camera, earlier, image, step) if compared else None
         had_lost, self._lost = self._lost is not None, self._lost_after(change)
         has_lost = self._lost is not None
         kept_m = NEAR_M if has_lost and self._is_clear else APART_M
         is_apart = float(np.hypot(*step[:2])) > kept_m
-        if is_apart or has_lost < had_lost or (looks and change is None):
+        if is_apart or has_lost < had_lost or (compared and change is None):
             self._follow(details, None if had_lost > has_lost else change, float(step[0]))
             self._before, self._is_clear = (details, pose), self._lost is None
         return self._lost is not None
 
-    def _is_worth_a_look(self, before: TileDetails, after: TileDetails) -> bool:
+    def _is_compared(self, before: TileDetails, after: TileDetails) -> bool:
         """Whether the same terrain has to be compared in two images; of clear ones seldom."""
         is_usual = self._lost is None and self._slow.knows_clear
         return not is_usual or may_have_lost(self._camera, before, after)

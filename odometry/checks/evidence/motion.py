@@ -104,7 +104,7 @@ class Integrals:
     left_m, right_m, gyroscope_rad : callable of stamps (K,) to (K,)
         The last one gives NaN where no gyroscope was recorded.
     silent_s : (S, 2)
-        Stamps between which the gyroscope says nothing. Differences across them are no turns.
+        Stamps between which the gyroscope was not measured. Differences across them are no turns.
     """
 
     left_m: Callable[[FloatArray], FloatArray]
@@ -117,7 +117,7 @@ class Integrals:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Left and right travel and turn by the gyroscope (K,) from stamps (K,) to others.
 
-        The turn is NaN where the gyroscope was silent for a while in between.
+        The turn is NaN where the gyroscope was not measured for a while in between.
         """
         left_m, right_m, turn_rad = (
             integral(end_s) - integral(begin_s)
@@ -142,7 +142,7 @@ def integrals(
         Tread speeds without spikes, at the stamps of odometry.csv.
     yaw_rate : (stamps (G,), rad/s (G,)) or None
     silent_s : (S, 2)
-        Stamps of the yaw rate between which it says nothing.
+        Stamps between which it was not measured.
     """
     stamps_s = run.odometry.stamps_s
     turned = _held(*yaw_rate) if yaw_rate is not None else lambda s: np.full(len(s), np.nan)

@@ -103,6 +103,17 @@ def _clipped(evidence: Evidence) -> Iterator[Finding]:
             "The gyroscope is clipped (saturates): its full-scale range is too small",
             "Choose a larger range; do not use these rows",
         )
+    elif limit := _limit(evidence, odd := _held_in_turns(evidence)):
+        lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
+        yield Finding(
+            "gyroscope_clipped",
+            Level.WARNING,
+            f"gyro_z is exactly +{limit:.4g} or -{limit:.4g} rad/s for {lasts_s:.1f} s while the "
+            "treads turn the robot",
+            "The gyroscope is clipped (saturates) in a part: its full-scale range is too small",
+            "Choose a larger range; do not use these rows",
+            tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
+        )
 
 
 def held_s(evidence: Evidence) -> float:
@@ -144,34 +155,25 @@ def _treads_change(evidence: Evidence, renewed_s: FloatArray) -> bool:
     return bool(np.mean(changed > HELD * evidence.fastest_m_s) > OFTEN)
 
 
-def _dead(evidence: Evidence) -> Iterator[Finding]:
+def _held_in_turns(evidence: Evidence) -> list[FloatArray]:
+    """Spans (2,) in which one rate is repeated while the treads turn the robot."""
     assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
-    stamps_s, rates = evidence.yaw_rate
-    spans = constant_spans(stamps_s, rates, DEAD_S)
-    odd = [span for span in spans if _turns_by_treads(evidence, span)]
-    if not odd:
+    spans = constant_spans(*evidence.yaw_rate, DEAD_S)
+    return [span for span in spans if _turns_by_treads(evidence, span)]
+
+
+def _dead(evidence: Evidence) -> Iterator[Finding]:
+    odd = _held_in_turns(evidence)
+    if not odd or _limit(evidence, odd):
         return
     lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
-    spans_s = tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd)
-    if limit := _limit(evidence, odd):
-        if not any(_clipped(evidence)):
-            yield Finding(
-                "gyroscope_clipped",
-                Level.WARNING,
-                f"gyro_z is exactly +{limit:.4g} or -{limit:.4g} rad/s for {lasts_s:.1f} s while "
-                "the treads turn the robot, and less between",
-                "The gyroscope is clipped (saturates) in a part: its full-scale range is too small",
-                "Choose a larger range; do not use these rows",
-                spans_s,
-            )
-        return
     yield Finding(
         "gyroscope_dead",
         Level.WARNING,
         f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
         _dead_zone(evidence) or "The gyroscope is stuck or was lost",
         "Leave gyro_z empty there",
-        spans_s,
+        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
     )
 
 
@@ -183,10 +185,9 @@ def _limit(evidence: Evidence, spans_s: Sequence[FloatArray]) -> float:
     assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
     stamps_s, rates = evidence.yaw_rate
     held = rates[np.searchsorted(stamps_s, [begin_s for begin_s, _ in spans_s])]
-    limit = float(held.max())
-    return (
-        limit if limit > 0 and np.abs(np.abs(held) - limit).max() < SAME and held.min() < 0 else 0.0
-    )
+    limit = float(np.abs(held).max(initial=0.0))
+    both = bool((held > 0).any() and (held < 0).any())
+    return limit if both and np.abs(np.abs(held) - limit).max() < SAME else 0.0
 
 
 def _dead_zone(evidence: Evidence) -> str:

@@ -17,7 +17,8 @@ def part_changes(evidence: Evidence) -> Iterator[Finding]:
     """What makes all sensors agree when it is undone in one span.
 
     The columns of one sensor are in another unit there, their sign is reversed, or they are
-    exchanged. Where several such changes explain as much, all of them are named.
+    exchanged. Where several such changes explain as much, all of them are named. Where none does,
+    one tread may be read at another scale (`scaled_side`).
     """
     before = not_explained(evidence)
     changes = CHANGES if any(left > 1 - AGREES for left in before.values()) else ()

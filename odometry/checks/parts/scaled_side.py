@@ -25,6 +25,7 @@ def scaled_side(evidence: Evidence, before: Shares) -> Iterator[Finding]:
     """A tread whose scale, undone in one span, makes all sensors agree far better.
 
     A tread that reads too little is no slip: the robot would move farther than its treads roll.
+    Turns alone do not distinguish it from another width: the way along must have been measured.
 
     Parameters
     ----------
@@ -35,29 +36,34 @@ def scaled_side(evidence: Evidence, before: Shares) -> Iterator[Finding]:
     pairs = [pair for pair in before if pair.endswith("by treads")]
     if len(pairs) < 2 or max(before[pair] for pair in pairs) < LEAST:
         return
-    sides = [_best(evidence, side, before, pairs) for side in range(2)]
-    found = [(of, side) for side, of in enumerate(sides) if of is not None]
-    best, side = min(found, key=lambda one: one[0].left(pairs), default=(None, 0))
-    if best is None or best.left(pairs) > LEFT * sum(before[pair] for pair in pairs):
+    found = [of for side in range(2) if (of := _best(evidence, side, before, pairs)) is not None]
+    if not found:
         return
-    reads = float(1 / best.change.undo(np.ones((2, 1)))[side, 0])
-    if abs(np.log(reads)) < CHANGED:
-        return
-    yield _finding(evidence, best, side, reads)
+    best, reads = min(found, key=lambda one: one[0].left(pairs))
+    improves = best.left(pairs) < LEFT * sum(before[pair] for pair in pairs)
+    if improves and abs(np.log(reads)) > CHANGED:
+        yield _finding(evidence, best, reads)
 
 
-def _best(evidence: Evidence, side: int, before: Shares, pairs: list[str]) -> Candidate | None:
-    """The scale of a side that leaves the least, as exact as its span tells."""
+def _best(
+    evidence: Evidence, side: int, before: Shares, pairs: list[str]
+) -> tuple[Candidate, float] | None:
+    """The scale of a side that leaves the least, and what the tread reads, times its motion."""
     rough = [candidate(evidence, _change(side, reads), before) for reads in READS]
     found = min((of for of in rough if of is not None), key=lambda of: of.left(pairs), default=None)
-    if found is None:
+    reads = None if found is None else _reads(evidence, side, found.span)
+    if reads is None:
         return None
-    return candidate(evidence, _change(side, _reads(evidence, side, found.span)), before)
+    exact = candidate(evidence, _change(side, reads), before)
+    return None if exact is None else (exact, reads)
 
 
 def _change(side: int, reads: float) -> Change:
     return Change(
-        "treads", f"{TREADS[side]} reads {reads:.2f} times", "", partial(_undo, side, reads)
+        "treads",
+        f"{TREADS[side]} reads about {reads:.2g} times the motion of its tread",
+        f"Correct {TREADS[side]} there, or cut with --from and --to",
+        partial(_undo, side, reads),
     )
 
 
@@ -68,10 +74,10 @@ def _undo(side: int, reads: float, columns: FloatArray) -> FloatArray:
     return np.asarray(columns * scales)
 
 
-def _reads(evidence: Evidence, side: int, span: Span) -> float:
-    """What a tread reads in a span, times its motion, by the turns of another sensor; 1 if unsure.
+def _reads(evidence: Evidence, side: int, span: Span) -> float | None:
+    """What a tread reads in a span, times its motion, by the turns of another sensor.
 
-    It is sure where neither the other tread nor the width of the robot, each with a scale of its
+    None unless neither the other tread nor the width of the robot, each with a scale of its
     own in the span, explains nearly as much: the width changes with the terrain.
     """
     other, windows = beside(evidence, "treads")
@@ -85,7 +91,7 @@ def _reads(evidence: Evidence, side: int, span: Span) -> float:
     _, of_width = _scale(right_m - left_m, turned_m)
     scale, left = one_side[side]
     if scale <= 0 or left > ALONE * min(one_side[1 - side][1], of_width):
-        return 1.0
+        return None
     return 1 / scale
 
 
@@ -95,19 +101,18 @@ def _scale(read_m: FloatArray, moved_m: FloatArray) -> tuple[float, float]:
     return scale, float(np.sum((moved_m - scale * read_m) ** 2))
 
 
-def _finding(evidence: Evidence, best: Candidate, side: int, reads: float) -> Finding:
-    began_s, name = evidence.run.began_s, TREADS[side]
+def _finding(evidence: Evidence, best: Candidate, reads: float) -> Finding:
+    began_s, change = evidence.run.began_s, best.change
     when = best.span.words(began_s)
-    scale = f"{name} reads about {reads:.2g} times the motion of its tread"
     less = "counts are lost, or it is in another unit"
     more = "it is in another unit, or that tread slips there far more than the other"
     return Finding(
         "changed_in_part",
         Level.WARNING,
-        f"{when} the turns of the treads differ from those of the other sensors, as if {scale}; "
-        "elsewhere they do not",
-        f"{when[:1].upper()}{when[1:]} {scale}: {less if reads < 1 else more}",
-        f"Correct {name} there, or cut with --from and --to",
+        f"{when} the turns of the treads differ from those of the other sensors, as if "
+        f"{change.words}; elsewhere they do not",
+        f"{when[:1].upper()}{when[1:]} {change.words}: {less if reads < 1 else more}",
+        change.remedy,
         (best.span.run_time_s(began_s, evidence.duration_s),),
-        mend=lambda run: best.change.undone(run, "odometry", best.span),
+        mend=lambda run: change.undone(run, "odometry", best.span),
     )
