@@ -1,6 +1,6 @@
 """Bias, range and axis of the gyroscope."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -9,19 +9,14 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.gyroscope_bias import bias_by_poses, stationary_bias
 from odometry.checks.evidence.outliers import spikes
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.imu.held_rates import HELD, LIVELY, SAME, dead, held_in_turns, limit_of
 from odometry.checks.imu.rate_wander import rate_wander
-from odometry.windows.spans import constant_spans
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1
 LEAST_DRIFT_RAD_S, SURELY = 0.01, 2.0  # times what is said of both rates
 CERTAIN = 4.0
 CLIPPED = 0.01  # share of rows at the very largest rate
-LIVELY = 20  # other values: a rate without noise that is held (a simulation) is not clipped
-HELD = 0.01  # of the ordinary fastest speed, by which treads change that hold a turn
-DEAD_S = 1.0
-SAME = 1e-9  # rad/s
-FAR_FROM_ZERO = 10.0  # times the step between other rates: none is smaller
 LEAST_HOLDS, LONG_HOLD_S = 20, 0.3  # from which a rate that is held makes headings late
 EVEN = 1.5  # ratio of a long to a short hold below which they have one pace
 OFTEN = 0.3  # share of these holds in which the treads change
@@ -34,7 +29,7 @@ def gyroscope(evidence: Evidence) -> Iterator[Finding]:
     yield from _bias(evidence)
     yield from _clipped(evidence)
     yield from _held(evidence)
-    yield from _dead(evidence)
+    yield from dead(evidence)
     yield from _absurd(evidence)
 
 
@@ -103,7 +98,7 @@ def _clipped(evidence: Evidence) -> Iterator[Finding]:
             "The gyroscope is clipped (saturates): its full-scale range is too small",
             "Choose a larger range; do not use these rows",
         )
-    elif limit := _limit(evidence, odd := _held_in_turns(evidence)):
+    elif limit := limit_of(evidence, odd := held_in_turns(evidence)):
         lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
         yield Finding(
             "gyroscope_clipped",
@@ -153,69 +148,6 @@ def _treads_change(evidence: Evidence, renewed_s: FloatArray) -> bool:
     turning = np.diff(evidence.speeds_m_s, axis=1)[:, 0]
     changed = np.maximum.reduceat(turning, rows) - np.minimum.reduceat(turning, rows)
     return bool(np.mean(changed > HELD * evidence.fastest_m_s) > OFTEN)
-
-
-def _held_in_turns(evidence: Evidence) -> list[FloatArray]:
-    """Spans (2,) in which one rate is repeated while the treads turn the robot."""
-    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
-    spans = constant_spans(*evidence.yaw_rate, DEAD_S)
-    return [span for span in spans if _turns_by_treads(evidence, span)]
-
-
-def _dead(evidence: Evidence) -> Iterator[Finding]:
-    odd = _held_in_turns(evidence)
-    if not odd or _limit(evidence, odd):
-        return
-    lasts_s = sum(end_s - begin_s for begin_s, end_s in odd)
-    yield Finding(
-        "gyroscope_dead",
-        Level.WARNING,
-        f"gyro_z repeats one value for {lasts_s:.1f} s while the treads turn the robot",
-        _dead_zone(evidence) or "The gyroscope is stuck or was lost",
-        "Leave gyro_z empty there",
-        tuple((evidence.run_time_s(b), evidence.run_time_s(e)) for b, e in odd),
-    )
-
-
-def _limit(evidence: Evidence, spans_s: Sequence[FloatArray]) -> float:
-    """The size of rates that are held in spans (2,), if it is one, reached to both sides; else 0.
-
-    A gyroscope that is stuck holds one value, and no other side of it.
-    """
-    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
-    stamps_s, rates = evidence.yaw_rate
-    held = rates[np.searchsorted(stamps_s, [begin_s for begin_s, _ in spans_s])]
-    limit = float(np.abs(held).max(initial=0.0))
-    both = bool((held > 0).any() and (held < 0).any())
-    return limit if both and np.abs(np.abs(held) - limit).max() < SAME else 0.0
-
-
-def _dead_zone(evidence: Evidence) -> str:
-    """Words where rates are zero or far from zero: slow turns are cut off."""
-    assert evidence.yaw_rate is not None  # noqa: S101 - checked by the caller
-    sizes = np.unique(np.abs(evidence.yaw_rate[1]))
-    if len(sizes) < LIVELY or sizes[0] > 0:
-        return ""
-    if sizes[1] < FAR_FROM_ZERO * float(np.quantile(np.diff(sizes[1:]), 0.9)):
-        return ""
-    return (
-        f"It has a dead zone: slower turns than {sizes[1]:.2g} rad/s read zero (a threshold "
-        "against drift); or it was lost at times"
-    )
-
-
-def _turns_by_treads(evidence: Evidence, span: FloatArray) -> bool:
-    """Whether the treads turn the robot within a span, and not by one rate that both hold."""
-    m = evidence.uniform
-    inside = (m.start_s >= span[0] - 1e-6) & (m.end_s <= span[1] + 1e-6)
-    if not inside.any():
-        return False
-    turning_m_s = m.difference_m[inside] / m.lasts_s[inside]
-    row = int(np.searchsorted(evidence.yaw_rate[0], span[0])) if evidence.yaw_rate else 0
-    reads_zero = evidence.yaw_rate is not None and evidence.yaw_rate[1][row] == 0
-    changes = float(np.ptp(turning_m_s)) > HELD * evidence.fastest_m_s
-    turns = float(np.mean(np.abs(turning_m_s))) > 0.1 * evidence.fastest_m_s
-    return turns and (reads_zero or changes)
 
 
 def _absurd(evidence: Evidence) -> Iterator[Finding]:

@@ -37,3 +37,10 @@ def test_one_value_is_a_gyroscope_that_is_stuck(run):
     stuck = faulty.gyroscope(run, lambda rate: from_a_third(rate, rate[len(rate) // 3]))
     assert "gyroscope_clipped" not in named(stuck)
     assert "gyroscope_dead" in named(stuck)
+
+
+def test_a_log_of_the_side_of_the_turn_alone_is_not_clipped(run):
+    sides = faulty.gyroscope(run, lambda rate: from_a_third(rate, 0.15 * np.sign(rate)))
+    found = named(sides)
+    assert "gyroscope_clipped" not in found
+    assert "the side of a turn alone" in found["gyroscope_dead"].cause
