@@ -58,8 +58,10 @@ def agreement(
     is said to: both swing the step by the turn, about a place that is fitted beside the gain.
     """
     place, yaw = steps[:, 0] + 1j * steps[:, 1], steps[:, 2].astype(np.complex128)
-    moved = travel_m * np.sinc(turn_rad / (2 * np.pi)) * np.exp(0.5j * turn_rad)
-    swung = np.exp(1j * turn_rad) - 1.0
+    half: Complex = np.exp(0.5j * turn_rad)
+    whole: Complex = np.exp(1j * turn_rad)
+    moved = travel_m * np.sinc(turn_rad / (2 * np.pi)) * half
+    swung: Complex = whole - 1.0
     place_sd = noise * (PLACE_M + PLACE * np.abs(place))
     turn_sd = noise * (TURN_RAD + TURN * np.abs(yaw))
     off, aside = np.zeros(moved.shape), np.zeros(moved.shape)

@@ -137,7 +137,7 @@ def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
         if of_one.all() and known.all():
             counts = np.full(len(some), len(one))
             a, b = one - one.mean(), some - some.mean(axis=1)[:, None]
-            squares, products = np.sum(a**2), b @ a
+            squares, products = np.sum(a**2, keepdims=True), b @ a
         else:
             known &= of_one
             counts = known.sum(axis=1)
