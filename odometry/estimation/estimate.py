@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.course import Course
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.measurement import Gaussian
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.other_places import Doubt
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
@@ -199,9 +200,9 @@ class Estimate:
         return motion if motion.is_known and motion.lasts_s < compare_s else None
 
     @property
-    def certain(self) -> "Estimate":
-        """With the covariance with which the filter goes on, see `doubt`."""
-        return self if self.doubt is None else replace(self, covariance=self.doubt.covariance)
+    def certain(self) -> Gaussian:
+        """Mean (9,) and covariance (9, 9) with which the filter goes on, see `doubt`."""
+        return self.mean, self.covariance if self.doubt is None else self.doubt.covariance
 
     @property
     def alphas(self) -> FloatArray:

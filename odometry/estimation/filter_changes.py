@@ -59,8 +59,7 @@ def followed_at_rest(
         return after._replace(events=(*after.events, *rest_watch.ended(watch, stamp_s))), None
     came_back = any(event.kind == SHIFTED_POSES for event in after.events)
     if watch is None or came_back:
-        before = estimate.mean, estimate.covariance
-        watch = RestWatch(estimate.stamp_s, before, estimate.scale)
+        watch = RestWatch(estimate.stamp_s, estimate.certain, estimate.scale)
     if math.isfinite(yaw_rate_rad_s):
         turn_rad = (yaw_rate_rad_s - watch.before[0][GYRO_BIAS]) * (stamp_s - estimate.stamp_s)
         watch = watch._replace(turned_rad=watch.turned_rad + float(turn_rad))

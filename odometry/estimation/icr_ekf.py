@@ -150,7 +150,6 @@ class IcrEkf:
                 "expected frames in time order (odometry.estimation.in_order puts late ones in "
                 "their place)"
             )
-        estimate = estimate.certain
         predicted = self._prediction.at(frame, estimate)
         belief, yaw_rate = predicted.belief, predicted.yaw_rate_rad_s
         recent, learned, crossing = estimate.recent, estimate.learned, estimate.crossing

@@ -1,7 +1,6 @@
 """What a filter predicts from step to step, the variance that it adds, treads and gyroscope."""
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -139,7 +138,7 @@ class Prediction:
         yaw_rate = frame.yaw_rate_rad_s if self._use_gyroscope else math.nan
         watch, held = estimate.watch, estimate.tread_speeds_m_s
         if watch is None:
-            belief = self._moved(estimate, frame, yaw_rate)
+            belief = self._moved(estimate, estimate.certain, frame, yaw_rate)
             return Predicted(belief, yaw_rate, frame.pose, frame.tread_speeds_m_s, None, ())
         seen = sensor_watch.sensed(
             watch,
@@ -147,13 +146,11 @@ class Prediction:
             estimate.stamp_s,
             speeds_m_s=held,
             yaw_rate=yaw_rate,
-            belief=(estimate.mean, estimate.covariance),
+            belief=estimate.certain,
             terrain=estimate.terrain,
         )
         yaw_rate = seen.yaw_rate_rad_s
-        if seen.belief[0] is not estimate.mean:
-            estimate = replace(estimate, mean=seen.belief[0], covariance=seen.belief[1])
-        belief = self._moved(estimate, frame, yaw_rate)
+        belief = self._moved(estimate, seen.belief, frame, yaw_rate)
         was_stuck, scale = watch.treads.stuck >= 0, estimate.scale.slip
         watch, speeds, events = sensor_watch.with_treads(seen, frame, held, belief, scale)
         if frame.in_gap or watch.is_doubtful:
@@ -169,14 +166,16 @@ class Prediction:
                 belief = tread_watch.parted(belief, watch.treads, newly_stuck=newly_stuck)
         return Predicted(belief, yaw_rate, seen.pose, speeds, watch, events)
 
-    def _moved(self, estimate: Estimate, frame: Frame, yaw_rate: float) -> Gaussian:
+    def _moved(
+        self, estimate: Estimate, before: Gaussian, frame: Frame, yaw_rate: float
+    ) -> Gaussian:
         """Chen 2023 eq. 7, and the treads against the gyroscope."""
         step_s, speeds = frame.stamp_s - estimate.stamp_s, estimate.tread_speeds_m_s
         if math.isnan(sum(speeds.tolist())):
-            return estimate.mean, estimate.covariance
+            return before
         by_gyroscope = not math.isnan(yaw_rate)
         mean, jacobian = transition(
-            estimate.mean,
+            before[0],
             speeds,
             step_s,
             yaw_rate_rad_s=yaw_rate,
@@ -195,7 +194,7 @@ class Prediction:
             bias_walk=1.0 if estimate.watch is None else estimate.watch.bias.walk,
             alpha_walk=_alpha_walk(estimate),
         )
-        covariance = predicted(estimate.covariance, jacobian, half_noise)
+        covariance = predicted(before[1], jacobian, half_noise)
         if not by_gyroscope or step_s == 0 or frame.in_gap:
             return mean, covariance
         if estimate.watch is not None and estimate.watch.is_doubtful:

@@ -86,7 +86,7 @@ class StuckUpdate:
     ) -> Seen:
         """At the pose measured there, or at the one before."""
         there = None if watch.away else pose
-        held = self._as_before(watch, (estimate.mean, estimate.covariance), there, after)
+        held = self._as_before(watch, estimate.certain, there, after)
         near = next((each.near for each in after.others if each.since_s == watch.since_s), 0)
         led = stuck_watch.where_treads_led(watch, held.mean, near)
         return held._replace(others=(*held.others, led))
