@@ -50,7 +50,7 @@ class OtherPlace(NamedTuple):
 
     def pose(self, mean: FloatArray) -> FloatArray:
         """The pose (3,) there, of the mean (9,) of the estimate."""
-        return se2.compose(self.motion, mean[:3])
+        return se2.compose_one(self.motion, mean[:3])
 
 
 Others = tuple[OtherPlace, ...]
@@ -161,15 +161,16 @@ def doubted(
     if not others and refused is None:
         return belief[1], None
     covariance = belief[1].copy()
+    of_pose = covariance[:3, :3]
     for each in others:
         apart = each.pose(belief[0]) - belief[0][:3]
         apart[YAW] = wrap_one(float(apart[YAW]))
         share = SHARE * (1 - (stamp_s - each.since_s) / LASTS_S)
-        covariance[:3, :3] += share * (each.covariance + np.outer(apart, apart))
+        of_pose += share * (each.covariance + apart[:, None] * apart)
     if refused is not None:
         apart = np.zeros(3)
         apart[{1: [YAW], 2: [X, Y], 3: [X, Y, YAW]}[len(refused)]] = refused
-        covariance[:3, :3] += SHARE * (pose_covariance + np.outer(apart, apart))
+        of_pose += SHARE * (pose_covariance + apart[:, None] * apart)
     return covariance, Doubt(belief[1], others)
 
 
@@ -178,5 +179,6 @@ def with_lasting_errors(belief: Gaussian, covered: Covered, sigma_m: float) -> C
     if not sigma_m:
         return covered
     covariance, doubt = covered[0].copy(), covered[1]
-    covariance[[X, Y], [X, Y]] += sigma_m**2
+    covariance[X, X] += sigma_m**2
+    covariance[Y, Y] += sigma_m**2
     return covariance, doubt or Doubt(belief[1], ())

@@ -1,5 +1,7 @@
 """Rigid motions in the plane; a pose is (x, y, yaw) in metres and radians."""
 
+import math
+
 import numpy as np
 
 from odometry.arrays import FloatArray, components_first, components_last
@@ -62,6 +64,21 @@ def compose(first: FloatArray, second: FloatArray) -> FloatArray:
     x, y = _rotate(second[..., 0], second[..., 1], first[..., 2])
     return np.stack(
         [first[..., 0] + x, first[..., 1] + y, wrap(first[..., 2] + second[..., 2])], axis=-1
+    )
+
+
+def compose_one(first: FloatArray, second: FloatArray) -> FloatArray:
+    """`compose` of two poses (3,), to the last bit, in a tenth of its time."""
+    begin_x, begin_y, turn = first.tolist()
+    x, y, yaw = second.tolist()
+    cosine, sine = float(np.cos(turn)), float(np.sin(turn))  # their last bit is not that of math's
+    angle = math.pi - (math.pi - (turn + yaw)) % (2 * math.pi)
+    return np.array(
+        [
+            begin_x + (cosine * x - sine * y),
+            begin_y + (sine * x + cosine * y),
+            math.pi if angle == -math.pi else angle,
+        ]
     )
 
 

@@ -71,6 +71,18 @@ def test_compose_is_the_matrix_product(one, other):
     )
 
 
+@given(pose, pose)
+def test_compose_one_is_compose_to_the_last_bit(one, other):
+    assert se2.compose_one(one, other).tobytes() == se2.compose(one, other).tobytes()
+
+
+@pytest.mark.parametrize("turn", [np.pi, -np.pi])
+@pytest.mark.parametrize("yaw", [0.0, -0.0, 2 * np.pi, -2 * np.pi])
+def test_half_a_turn_is_the_same_of_one_and_of_many(turn, yaw):
+    one, other = np.array([1.0, 2.0, turn]), np.array([3.0, -4.0, yaw])
+    assert se2.compose_one(one, other).tobytes() == se2.compose(one, other).tobytes()
+
+
 @given(pose)
 def test_inverse_undoes(one):
     np.testing.assert_allclose(
