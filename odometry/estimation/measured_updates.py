@@ -120,7 +120,7 @@ class PoseUpdate:
                 after = self._taken(estimate, belief, measured, frame, recent)
                 if after.events:
                     others = left(others, belief, (after.mean, after.covariance), frame.stamp_s)
-                return after._replace(others=others)
+                return after._replace(others=others) if others else after
         return self._nothing(estimate, belief, recent)
 
     def _nothing(self, estimate: Estimate, belief: Gaussian, recent: tuple[float, ...]) -> Seen:

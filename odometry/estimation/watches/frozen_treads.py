@@ -72,10 +72,11 @@ def stepped(
     before : (9,), (9, 9)
         That when the treads took these speeds: they have changed bias and ICRs since.
     """
-    if frame.in_gap or math.isnan(speeds_m_s[0] + speeds_m_s[1]):
+    left, right = speeds_m_s.tolist()
+    if frame.in_gap or math.isnan(left + right):
         return None, ended(watch, begin_s)
     mean = before[0] if watch is None else watch.belief[0]
-    if not _stands(mean, speeds_m_s, yaw_rate) and (watch is None or not watch.is_found):
+    if not _stands(mean, left, right, yaw_rate) and (watch is None or not watch.is_found):
         return None, ()
     if watch is None:
         watch = FrozenTreads(begin_s, _with_pose(before, belief))
@@ -85,14 +86,13 @@ def stepped(
     return None, ended(watch, frame.stamp_s)
 
 
-def _stands(mean: FloatArray, speeds_m_s: FloatArray, yaw_rate: float) -> bool:
+def _stands(mean: FloatArray, left: float, right: float, yaw_rate: float) -> bool:
     """Whether the treads turn on the spot and the gyroscope reads, less its bias, no turn."""
-    left, right = speeds_m_s.tolist()
-    asked = float(mean[ALPHA_RIGHT]) * right - float(mean[ALPHA_LEFT]) * left
-    if abs(asked) <= max(TURNS_M_S, abs(left + right) / 2):
+    asked = mean.item(ALPHA_RIGHT) * right - mean.item(ALPHA_LEFT) * left
+    if abs(asked) <= TURNS_M_S or abs(asked) <= abs(left + right) / 2:
         return False
-    turned = float(mean[Y_LEFT] - mean[Y_RIGHT]) * (yaw_rate - float(mean[GYRO_BIAS]))
-    return bool(abs(turned) < STANDS * abs(asked))
+    turned = (mean.item(Y_LEFT) - mean.item(Y_RIGHT)) * (yaw_rate - mean.item(GYRO_BIAS))
+    return abs(turned) < STANDS * abs(asked)
 
 
 def _with_pose(before: Gaussian, belief: Gaussian) -> Gaussian:
