@@ -58,16 +58,18 @@ def fitted_logistic(
     removed = np.vstack([np.eye(size), -plain.slopes]) * scale
     middle = plain.means.mean(axis=0) * scale
     standard = np.column_stack([np.ones(len(table)), table @ removed - middle])
-    true = np.eye(len(of.means))[codes]
+    true, rows = np.eye(len(of.means))[codes], np.arange(len(codes))
 
     def loss(at: FloatArray) -> tuple[float, FloatArray]:
         weights = at.reshape(standard.shape[1], -1)
         raised = standard @ weights
-        raised = raised - raised.max(axis=1, keepdims=True)
-        among = np.exp(raised) / np.exp(raised).sum(axis=1, keepdims=True)
+        raised -= raised.max(axis=1, keepdims=True)
+        likely = np.exp(raised)
+        sums = likely.sum(axis=1)
+        among = likely / sums[:, None]
         ridge = RIDGE * np.vstack([np.zeros(len(true[0])), weights[1:]])
         slopes = standard.T @ (shares[:, None] * (among - true)) + ridge
-        own = (raised * true).sum(axis=1) - np.log(np.exp(raised).sum(axis=1))
+        own = raised[rows, codes] - np.log(sums)
         return float(-shares @ own + (ridge * weights).sum() / 2), slopes.ravel()
 
     start = np.zeros(standard.shape[1] * true.shape[1])
