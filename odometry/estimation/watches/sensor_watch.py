@@ -246,5 +246,5 @@ def with_treads(
         belief=before.belief,
         terrain=before.terrain,
     )
-    after = SensorWatch(treads, *watch[1:7], frozen, watch.slip, contrary, *watch[10:])
-    return after, speeds_m_s, before.events + spikes + freed + thawed + turned
+    watch = watch._replace(treads=treads, frozen=frozen, contrary=contrary)
+    return watch, speeds_m_s, before.events + spikes + freed + thawed + turned
