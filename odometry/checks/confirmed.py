@@ -19,7 +19,7 @@ DISAGREE = "sensors_disagree"
 # Of two sensors, and true only where these agree otherwise; nothing undoes them.
 OF_AGREEMENT = frozenset(
     {*SLIP, "slip_in_turns", "track_width", "treads_not_proportional", "position_axes"}
-    | {"smoothed_poses", "treads_unsigned"}
+    | {"smoothed_poses", "smoothed_treads", "treads_unsigned"}
 )
 AROUND_S = 2.0  # of such a moment that is left out
 LEAST_S = 15.0  # of a part between two cuts
@@ -40,7 +40,7 @@ TRIED_ALONE = frozenset(
         "treads_are_commands",
     }
     | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
-    | {"yaw_in_degrees", "changed_in_part"}
+    | {"yaw_in_degrees", "changed_in_part", "tread_scale_drifts"}
 )
 # The same where nothing is warned of but what these make: a sensor far from the centre goes too far
 # where the robot turns to one side; of a yaw rate in another unit small turns seem large.

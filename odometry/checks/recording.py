@@ -49,6 +49,7 @@ from odometry.checks.treads.one_motion import one_motion
 from odometry.checks.treads.proportion import proportion
 from odometry.checks.treads.scale_change import scale_change
 from odometry.checks.treads.sides import sides
+from odometry.checks.treads.smoothed_treads import smoothed_treads
 from odometry.checks.treads.stuck_encoders import stuck_encoders
 from odometry.checks.treads.tread_motion import tread_motion
 from odometry.checks.treads.tread_samples import tread_samples
@@ -96,6 +97,7 @@ CHECKS: tuple[Check, ...] = (
     blocked_turns,
     tread_samples,
     treads,
+    smoothed_treads,
     gaps,
     stepping_clocks,
     explained_lags,

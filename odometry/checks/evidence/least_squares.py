@@ -2,13 +2,15 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 
 # Columns whose angle has a smaller sine, whose lengths are further apart, or whose squares vanish
 # or overflow are left to a decomposition, which takes many times as long. Of the rest the normal
 # equations give twelve digits.
 LEAST_SINE, LEAST_LENGTH = 1e-2, 1e-4
 SQUARES = (1e-200, 1e100)
+
+ORDINARY, ROUNDS = 0.9, 3  # share of the rows that are fitted, those that are explained best
 
 
 class Columns:
@@ -41,6 +43,20 @@ class Columns:
 def least_squares(columns: FloatArray, target: FloatArray) -> FloatArray:
     """The coefficients (P,) of columns (P, K) by which least is left of a target (K,)."""
     return Columns(columns).coefficients(target)
+
+
+def ordinary_fit(columns: FloatArray, target: FloatArray) -> tuple[float, FloatArray]:
+    """Squares that columns (P, K) leave of a target (K,), and coefficients (P,), without outliers.
+
+    Those rows are fitted and counted that the columns explain best.
+    """
+    count = int(ORDINARY * len(target))
+    kept: IntArray = np.arange(len(target))
+    for _ in range(ROUNDS):
+        found = least_squares(columns[:, kept], target[kept])
+        squares = (target - found @ columns) ** 2
+        kept = np.argpartition(squares, count - 1)[:count]
+    return float(np.sum(squares[kept])), found
 
 
 def of_products(products: FloatArray) -> FloatArray | None:

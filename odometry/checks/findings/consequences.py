@@ -80,7 +80,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     | {"treads_unrelated", "far_sensor", "treads_are_twist", "treads_unequal", "stuck_encoder"}
     | {"treads_or_gyroscope_reversed", "treads_swapped", "gyroscope_reversed", "pose_mirrored"}
     | {"gyroscope_unrelated", "poses_unrelated", "treads_late", "tread_offset", "gyroscope_unit"}
-    | {"yaw_reversed", "turns_at_rest", "one_motion"},
+    | {"yaw_reversed", "turns_at_rest", "one_motion", "changed_in_part", "tread_scale_drifts"},
     "treads_unsigned": TREADS
     | POSES
     | YAW
@@ -218,8 +218,9 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     faults = {f.name for f in findings if f.level is not Level.NOTE} - {"sensors_disagree"}
     if faults:
         implied.add("sensors_disagree")  # it is for what has no name
-    if faults - {"smoothed_poses"}:
-        implied.add("smoothed_poses")  # what is wrong otherwise may look smooth
+    for smooth in ("smoothed_poses", "smoothed_treads"):
+        if faults - {smooth}:
+            implied.add(smooth)  # what is wrong otherwise may look smooth
     if any(f.level is not Level.NOTE and _is_of_turns(f.name) for f in findings):
         implied.add("gyroscope_scale")  # what is wrong by a little may be a part of it
     return [finding for finding in findings if finding.name not in implied]

@@ -6,6 +6,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.parts.candidates import Candidate, candidate, not_explained
 from odometry.checks.parts.changes import CHANGES, Change
+from odometry.checks.parts.drifting_side import side_drifts
 from odometry.checks.parts.scaled_side import scaled_side
 
 AGREES = 0.9  # share of the turns that all sensors explain of each other: nothing changes
@@ -18,7 +19,7 @@ def part_changes(evidence: Evidence) -> Iterator[Finding]:
 
     The columns of one sensor are in another unit there, their sign is reversed, or they are
     exchanged. Where several such changes explain as much, all of them are named. Where none does,
-    one tread may be read at another scale (`scaled_side`).
+    one tread may be read at another scale (`scaled_side`), or at one that drifts (`side_drifts`).
     """
     before = not_explained(evidence)
     changes = CHANGES if any(left > 1 - AGREES for left in before.values()) else ()
@@ -30,7 +31,7 @@ def part_changes(evidence: Evidence) -> Iterator[Finding]:
         alike = AS_WELL * found[0].left(pairs) + NEARLY
         yield _finding(evidence, [one for one in found if one.left(pairs) < alike])
     else:
-        yield from scaled_side(evidence, before)
+        yield from list(scaled_side(evidence, before)) or side_drifts(evidence)
 
 
 def _finding(evidence: Evidence, alike: Sequence[Candidate]) -> Finding:

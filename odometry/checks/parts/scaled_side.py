@@ -9,9 +9,10 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS
-from odometry.checks.parts.candidates import Candidate, Shares, candidate
+from odometry.checks.parts.candidates import Candidate, Shares, candidate, not_explained
 from odometry.checks.parts.changed_span import beside, turns_of
 from odometry.checks.parts.changes import Change
+from odometry.checks.parts.drifting_side import drifting_side
 from odometry.checks.parts.span import Span
 
 READS = (1 / 3, 1 / 2, 2 / 3, 1.5, 2.0, 3.0)  # times its motion: what is searched for
@@ -41,8 +42,17 @@ def scaled_side(evidence: Evidence, before: Shares) -> Iterator[Finding]:
         return
     best, reads = min(found, key=lambda one: one[0].left(pairs))
     improves = best.left(pairs) < LEFT * sum(before[pair] for pair in pairs)
-    if improves and abs(np.log(reads)) > CHANGED:
+    if improves and abs(np.log(reads)) > CHANGED and not _drifts(evidence, best, pairs):
         yield _finding(evidence, best, reads)
+
+
+def _drifts(evidence: Evidence, best: Candidate, pairs: list[str]) -> bool:
+    """Whether a scale of one tread that drifts leaves less than one scale in a span."""
+    drift = drifting_side(evidence)
+    if drift is None:
+        return False
+    shares = not_explained(Evidence(drift.undone(evidence.run), evidence.left_out_s))
+    return sum(shares.get(pair, 1.0) for pair in pairs) < best.left(pairs)
 
 
 def _best(

@@ -18,8 +18,9 @@ OFTEN = 0.2  # of the sharp turns, and share of the rows in them whose value is 
 LEAST_TURN_RAD = 1.0
 STRAIGHT = 0.1  # of the sharpest turns, below which the robot drives straight on
 MOVING = 0.1  # of the ordinary fastest speed
-# Of the share of the sharp turns, that of straight drives: commands are equal there.
-ELSEWHERE = 0.5
+# Of the share of the sharp turns, that of straight drives: commands are equal there. A part in
+# which several turns are equal has straight drives of its own.
+ELSEWHERE, SEVERAL = 0.5, 3
 # Share of the turns explained where no row is equal; 0.78 and more of 35 drives with the mean in
 # turns, 0.52 and less where a gyroscope was late, so that commands seemed to be equal in turns.
 HELD = 0.7
@@ -31,7 +32,7 @@ def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
     Two encoders differ in their last digits, even of a robot that slides.
     """
     for turns in measured_turns(evidence):
-        equal, differ = _equal_and_not(evidence, turns)
+        equal, differ, same = _equal_and_not(evidence, turns)
         rates = np.abs(turns.target) / turns.motion.lasts_s
         known = np.isfinite(rates)
         if not equal.any() or not known.any():
@@ -39,11 +40,13 @@ def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
         sharpest = np.quantile(rates[known], 0.95)
         sharp = known & (rates > SHARP * sharpest)
         odd = _lasting(turns, equal & sharp)
+        part = _parts(same, odd)
+        odd |= part & equal & sharp
         turned_rad = float(np.sum(np.abs(turns.target[odd])))
         if odd.sum() < max(LEAST_WINDOWS, OFTEN * sharp.sum()) or turned_rad < LEAST_TURN_RAD:
             continue
         m = turns.motion
-        straight = known & (rates < STRAIGHT * sharpest)
+        straight = known & (rates < STRAIGHT * sharpest) & ~part
         straight &= np.abs(m.mean_m) > MOVING * evidence.fastest_m_s * m.lasts_s
         if np.sum(equal & straight) * sharp.sum() > ELSEWHERE * odd.sum() * straight.sum():
             continue
@@ -59,20 +62,38 @@ def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
             "Both columns hold one speed in these turns: the mean of the treads, or one of them "
             "twice",
             "Log the speed of each tread; these turns are lost",
+            tuple(
+                (evidence.run_time_s(m.start_s[first]), evidence.run_time_s(m.end_s[end - 1]))
+                for first, end in runs_of(part)
+            ),
         )
         return
 
 
-def _equal_and_not(evidence: Evidence, turns: MeasuredTurns) -> tuple[BoolArray, BoolArray]:
-    """Windows (K,) in each row of which both treads have one speed, often a new one; in no row."""
+def _equal_and_not(
+    evidence: Evidence, turns: MeasuredTurns
+) -> tuple[BoolArray, BoolArray, BoolArray]:
+    """Windows (K,) in each row of which both treads have one speed, often a new one; in no row.
+
+    The third are those in each row of which they have one speed, moving or not.
+    """
     left, right = evidence.run.odometry.stack("v_left", "v_right").T
     new = np.insert(np.diff(left) != 0, 0, True)
-    rows = np.stack([np.ones(len(left)), (left == right) & (left != 0), new])
+    rows = np.stack([np.ones(len(left)), (left == right) & (left != 0), new, left == right])
     summed = np.cumsum(np.insert(rows, 0, 0.0, axis=1), axis=1)
     m = turns.motion
     first, last = (np.searchsorted(evidence.stamps_s, at_s) for at_s in (m.start_s, m.end_s))
-    count, equal, changing = summed[:, last] - summed[:, first]
-    return (count > 0) & (equal == count) & (changing > OFTEN * count), equal == 0
+    count, equal, changing, same = summed[:, last] - summed[:, first]
+    often_new = changing > OFTEN * count
+    return (count > 0) & (equal == count) & often_new, equal == 0, same == count
+
+
+def _parts(same: BoolArray, odd: BoolArray) -> BoolArray:
+    """Unbroken windows (K,) of equal speeds in which several turns are odd."""
+    part = np.zeros_like(same)
+    for first, end in runs_of(same):
+        part[first:end] = len(runs_of(odd[first:end])) >= SEVERAL
+    return part
 
 
 def _lasting(turns: MeasuredTurns, flags: BoolArray) -> BoolArray:

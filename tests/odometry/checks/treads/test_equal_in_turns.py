@@ -57,3 +57,18 @@ def test_speeds_that_are_held_are_lost_and_not_equal():
         return np.where(rows, 0.5, left), np.where(rows, 0.5, right)
 
     assert not list(equal_in_turns(Evidence(treads(run, change))))
+
+
+@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize("side", [0, 1])
+def test_one_tread_twice_in_a_part_with_straight_drives_of_its_own(sensors, side):
+    run = stepping()
+    part = (run.odometry["t"] > 41.3) & (run.odometry["t"] < 93.6)
+
+    def change(*both):
+        return np.where(part, both[side], both[0]), np.where(part, both[side], both[1])
+
+    found = check_recording(SENSORS[sensors](treads(run, change))).findings[0]
+    assert found.name == "treads_equal"
+    ((begin_s, end_s),) = found.spans_s
+    assert (begin_s, end_s) == pytest.approx((41.3, 93.6), abs=1.5)
