@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.findings.undo import TREADS
 from odometry.checks.parts.candidates import Candidate, candidate, not_explained
 from odometry.checks.parts.changes import CHANGES, Change
 from odometry.checks.parts.drifting_side import side_drifts
@@ -11,6 +12,7 @@ from odometry.checks.parts.scaled_side import scaled_side
 
 AGREES = 0.9  # share of the turns that all sensors explain of each other: nothing changes
 BETTER = 0.5  # share of what is not explained as recorded, that is left where a change is undone
+EQUAL, SPINS = 0.9, 0.1  # of the rows that move: equal in a span, opposite elsewhere
 AS_WELL, NEARLY = 1.3, 0.02  # times, and by how much, that what is left may be more than the least
 
 
@@ -26,12 +28,24 @@ def part_changes(evidence: Evidence) -> Iterator[Finding]:
     found = [of for change in changes if (of := candidate(evidence, change, before)) is not None]
     pairs = set(before).union(*(one.shares for one in found))
     most = BETTER * sum(before.get(pair, 1.0) for pair in pairs)
-    found = sorted((of for of in found if of.left(pairs) < most), key=lambda of: of.left(pairs))
+    found = [of for of in found if of.left(pairs) < most and not _holds_one_tread(evidence, of)]
+    found.sort(key=lambda of: of.left(pairs))
     if found:
         alike = AS_WELL * found[0].left(pairs) + NEARLY
         yield _finding(evidence, [one for one in found if one.left(pairs) < alike])
     else:
         yield from list(scaled_side(evidence, before)) or side_drifts(evidence)
+
+
+def _holds_one_tread(evidence: Evidence, found: Candidate) -> bool:
+    """Whether both treads are equal in its span: turned signs are those of commands to spin."""
+    if found.change.sensor != "treads":
+        return False
+    left, right = evidence.run.odometry.stack(*TREADS).T
+    moves, inside = left != 0, found.span.holds(evidence.stamps_s)
+    equal, opposite = moves & (left == right), moves & (left == -right)
+    spins = opposite[~inside].sum() > SPINS * moves[~inside].sum()
+    return bool(equal[inside].sum() > EQUAL * moves[inside].sum() and not spins)
 
 
 def _finding(evidence: Evidence, alike: Sequence[Candidate]) -> Finding:

@@ -116,3 +116,14 @@ def test_turns_of_another_recording_have_no_change(rng):
     run = varied()
     other = np.convolve(rng.standard_normal(len(run.odometry)), np.hanning(60), "same") * 0.1
     assert "changed_in_part" not in warnings(put(run, "odometry", gyro_z=other))
+
+
+def test_a_tread_in_both_columns_of_a_part_has_no_opposite_sign():
+    """A robot that mostly spins: one tread is nearly the other one with its sign turned."""
+    at_s = 0.05 * np.arange(4000)
+    run = drive(0.05 * np.sin(at_s / 5), 0.4 * np.sin(at_s / 3) + 0.3 * np.sin(at_s / 1.7))
+    part = (at_s > 62.3) & (at_s < 140.1)
+    twice = treads(run, lambda left, right: (left, np.where(part, left, right)))
+    assert list(part_changes(Evidence(twice))) == []
+    turned = treads(run, lambda left, right: (left, np.where(part, -right, right)))
+    assert [found.name for found in part_changes(Evidence(turned))] == ["changed_in_part"]
