@@ -9,6 +9,7 @@ from odometry.checks.parts.candidates import Candidate, candidate, not_explained
 from odometry.checks.parts.changes import CHANGES, Change
 from odometry.checks.parts.drifting_side import side_drifts
 from odometry.checks.parts.scaled_side import scaled_side
+from odometry.checks.parts.side_in_part import side_in_part
 
 AGREES = 0.9  # share of the turns that all sensors explain of each other: nothing changes
 BETTER = 0.5  # share of what is not explained as recorded, that is left where a change is undone
@@ -34,7 +35,8 @@ def part_changes(evidence: Evidence) -> Iterator[Finding]:
         alike = AS_WELL * found[0].left(pairs) + NEARLY
         yield _finding(evidence, [one for one in found if one.left(pairs) < alike])
     else:
-        yield from list(scaled_side(evidence, before)) or side_drifts(evidence)
+        in_a_span = list(scaled_side(evidence, before)) or list(side_in_part(evidence))
+        yield from in_a_span or side_drifts(evidence)
 
 
 def _holds_one_tread(evidence: Evidence, found: Candidate) -> bool:

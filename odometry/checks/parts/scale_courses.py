@@ -45,13 +45,14 @@ class WayClock:
 class ScaleCourses:
     """Windows (K) of a measured motion: of the turns, or of the way along.
 
-    `sign` is that of the left tread in it, beside the right one.
+    `windows_s` (K, 2) are their stamps. `sign` is that of the left tread beside the right one.
     """
 
     left_m: FloatArray
     right_m: FloatArray
     lasts_s: FloatArray
     target: FloatArray
+    windows_s: FloatArray
     hats: FloatArray
     sign: int
 
@@ -64,7 +65,8 @@ class ScaleCourses:
         if len(known) < LEAST_WINDOWS:
             return None
         of = of.rows(known)
-        return cls(of.left_m, of.right_m, of.lasts_s, target[known], clock.hats(of.start_s), sign)
+        windows_s, hats = np.stack([of.start_s, of.end_s], axis=-1), clock.hats(of.start_s)
+        return cls(of.left_m, of.right_m, of.lasts_s, target[known], windows_s, hats, sign)
 
     @cached_property
     def shares(self) -> FloatArray:
@@ -91,6 +93,10 @@ class ScaleCourses:
     def is_known(self) -> bool:
         """Whether treads of constant scales explain most of it."""
         return self.unexplained < WAY_KNOWN
+
+    def left_by_course(self, side: int) -> float:
+        """The squares that a course of one side leaves."""
+        return self._courses[side][0]
 
     def course(self, side: int) -> FloatArray:
         """The scale of one side at the knots (KNOTS,), in that of the other one; 0 without one."""

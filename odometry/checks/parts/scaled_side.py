@@ -43,7 +43,7 @@ def scaled_side(evidence: Evidence, before: Shares) -> Iterator[Finding]:
     best, reads = min(found, key=lambda one: one[0].left(pairs))
     improves = best.left(pairs) < LEFT * sum(before[pair] for pair in pairs)
     if improves and abs(np.log(reads)) > CHANGED and not _drifts(evidence, best, pairs):
-        yield _finding(evidence, best, reads)
+        yield finding_of_scale(evidence, best.change, best.span, reads)
 
 
 def _drifts(evidence: Evidence, best: Candidate, pairs: list[str]) -> bool:
@@ -59,16 +59,17 @@ def _best(
     evidence: Evidence, side: int, before: Shares, pairs: list[str]
 ) -> tuple[Candidate, float] | None:
     """The scale of a side that leaves the least, and what the tread reads, times its motion."""
-    rough = [candidate(evidence, _change(side, reads), before) for reads in READS]
+    rough = [candidate(evidence, change_of_scale(side, reads), before) for reads in READS]
     found = min((of for of in rough if of is not None), key=lambda of: of.left(pairs), default=None)
     reads = None if found is None else _reads(evidence, side, found.span)
     if reads is None:
         return None
-    exact = candidate(evidence, _change(side, reads), before)
+    exact = candidate(evidence, change_of_scale(side, reads), before)
     return None if exact is None else (exact, reads)
 
 
-def _change(side: int, reads: float) -> Change:
+def change_of_scale(side: int, reads: float) -> Change:
+    """A tread that is read at a scale."""
     return Change(
         "treads",
         f"{TREADS[side]} reads about {reads:.2g} times the motion of its tread",
@@ -111,10 +112,13 @@ def _scale(read_m: FloatArray, moved_m: FloatArray) -> tuple[float, float]:
     return scale, float(np.sum((moved_m - scale * read_m) ** 2))
 
 
-def _finding(evidence: Evidence, best: Candidate, reads: float) -> Finding:
-    began_s, change = evidence.run.began_s, best.change
-    when = best.span.words(began_s)
+def finding_of_scale(evidence: Evidence, change: Change, span: Span, reads: float) -> Finding:
+    """A tread that is read at a scale in a span."""
+    began_s = evidence.run.began_s
+    when = span.words(began_s)
     less = "counts are lost, or it is in another unit"
+    if reads > np.exp(-CHANGED):
+        less += ", or that tread slips more elsewhere"
     more = "it is in another unit, or that tread slips there far more than the other"
     return Finding(
         "changed_in_part",
@@ -123,6 +127,6 @@ def _finding(evidence: Evidence, best: Candidate, reads: float) -> Finding:
         f"{change.words}; elsewhere they do not",
         f"{when[:1].upper()}{when[1:]} {change.words}: {less if reads < 1 else more}",
         change.remedy,
-        (best.span.run_time_s(began_s, evidence.duration_s),),
-        mend=lambda run: change.undone(run, "odometry", best.span),
+        (span.run_time_s(began_s, evidence.duration_s),),
+        mend=lambda run: change.undone(run, "odometry", span),
     )

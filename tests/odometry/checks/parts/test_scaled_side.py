@@ -9,7 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.parts.part_changes import part_changes
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import varied
-from tests.odometry.checks.faulty import treads, without_gyroscope
+from tests.odometry.checks.faulty import SENSORS, treads, without_gyroscope
 
 SPAN_S = (63.2, 131.7)
 
@@ -34,6 +34,16 @@ def test_the_tread_its_scale_and_the_span_are_named(reads, side):
     ((begin_s, end_s),) = found.spans_s
     assert begin_s == pytest.approx(SPAN_S[0], abs=4.0)
     assert end_s == pytest.approx(SPAN_S[1], abs=4.0)
+
+
+@pytest.mark.parametrize("reads", [0.72, 1.37])
+@pytest.mark.parametrize("sensors", SENSORS)
+def test_a_scale_that_slip_may_be_is_named_with_its_span_and_slip(reads, sensors):
+    wrong = in_part(varied(), lambda left, right: (left, reads * right))
+    (found,) = part_changes(Evidence(SENSORS[sensors](wrong)))
+    assert re.search(r"v_right reads about ([\d.]+) times", found.cause).group(1) == f"{reads:.2g}"
+    assert "tread slips" in found.cause
+    assert found.spans_s[0] == pytest.approx(SPAN_S, abs=2.0)
 
 
 def test_poses_tell_it_without_a_gyroscope():
