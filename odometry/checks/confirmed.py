@@ -40,7 +40,7 @@ TRIED_ALONE = frozenset(
         "treads_are_commands",
     }
     | {"tread_late", "treads_unequal", "tread_scale_changed", "dropped_speeds"}
-    | {"yaw_in_degrees", "changed_in_part", "tread_scale_drifts"}
+    | {"yaw_in_degrees", "changed_in_part"}
 )
 # The same where nothing is warned of but what these make: a sensor far from the centre goes too far
 # where the robot turns to one side; of a yaw rate in another unit small turns seem large.

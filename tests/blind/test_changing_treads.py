@@ -7,16 +7,17 @@ import pytest
 
 from tests.blind.changing_treads import FAULTS, LOOK_ALIKES
 from tests.blind.faults.recordings import Recording
+from tests.blind.part_faults import inside
 
-STAMPS_S = np.arange(0, 100, 0.1)
+AT_S = np.arange(0, 100, 0.1)
 SPAN_S = (30.0, 60.0)
 
 
 def recording():
     odometry = {
-        "t": STAMPS_S,
-        "v_left": 1 + 0.5 * np.sin(STAMPS_S),
-        "v_right": 1 - 0.5 * np.sin(STAMPS_S),
+        "t": AT_S,
+        "v_left": 1 + 0.5 * np.sin(AT_S),
+        "v_right": 1 - 0.5 * np.sin(AT_S),
     }
     return Recording(SimpleNamespace(), "", {"odometry": odometry})
 
@@ -49,8 +50,7 @@ def test_smoothing_keeps_the_mean_and_takes_what_is_fast(seed):
 
 def test_both_columns_hold_one_tread_in_the_span_alone():
     (old_left, left), (old_right, right) = changed(FAULTS, "one_tread_twice").values()
-    begin_s, end_s = SPAN_S
-    part = (STAMPS_S >= begin_s) & (STAMPS_S < end_s)
+    part = inside(recording(), "odometry", SPAN_S)
     assert (left == right)[part].all()
     assert (left == old_left)[~part].all()
     assert (right == old_right)[~part].all()

@@ -90,6 +90,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "tread_scale_changed": TREADS
     | POSES
     | {"treads_not_proportional", "far_sensor", "treads_unequal", "slip_episodes"},
+    "tread_scale_drifts": TREADS
+    | POSES
+    | {"treads_not_proportional", "far_sensor", "treads_unequal", "tread_offset"},
     "treads_unequal": frozenset({"pose_jumps", "turn_blocked"}),
     "track_width": frozenset({"robot_size"}),  # turns say how wide it is
     "treads_are_counters": TREADS
@@ -193,6 +196,11 @@ NOT_CURVES = frozenset(
 )
 
 
+LOST_FOR_A_WHILE = frozenset(
+    {"turn_blocked", "dropped_speeds", "tread_late", "interleaved_rows", "changed_in_part"}
+)
+
+
 OF_TURNS = frozenset(
     {"pose_late", "clocks_apart", "clock_set", "poses_unrelated", "poses_are_wheel_odometry"}
     | {"pose_mirrored", "interpolated_poses", "repeated_poses", "frozen_poses", "turns_at_rest"}
@@ -211,6 +219,8 @@ def without_consequences(findings: Sequence[Finding]) -> list[Finding]:
     implied = {follows for name in names for follows in CONSEQUENCES.get(name, ())}
     if any(f.name == "repeated_stamps" and f.level is not Level.NOTE for f in findings):
         implied |= OF_REPEATED_STAMPS
+    if names & NOT_CURVES or names & LOST_FOR_A_WHILE:
+        implied.add("tread_scale_drifts")  # whose course follows nearly anything
     if "stuck_encoder" in implied:
         implied.add("slow_speeds_zero")
     if names & NOT_CURVES:

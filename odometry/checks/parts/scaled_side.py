@@ -117,9 +117,10 @@ def finding_of_scale(evidence: Evidence, change: Change, span: Span, reads: floa
     began_s = evidence.run.began_s
     when = span.words(began_s)
     less = "counts are lost, or it is in another unit"
-    if reads > np.exp(-CHANGED):
-        less += ", or that tread slips more elsewhere"
     more = "it is in another unit, or that tread slips there far more than the other"
+    if abs(np.log(reads)) < CHANGED:
+        less = "counts are lost, or that tread slips more elsewhere"
+        more = "a wheel or a setting is another one, or that tread slips there more than the other"
     return Finding(
         "changed_in_part",
         Level.WARNING,
