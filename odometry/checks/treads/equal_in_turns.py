@@ -39,7 +39,7 @@ def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
         equal, differ = rows.twice & rows.often_new, rows.equal == 0
         rates = np.abs(turns.target) / turns.motion.lasts_s
         known = np.isfinite(rates)
-        if not equal.any() or not known.any():
+        if not rows.twice.any() or not known.any():
             continue
         sharpest = np.quantile(rates[known], 0.95)
         sharp = known & (rates > SHARP * sharpest)
