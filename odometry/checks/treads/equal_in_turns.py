@@ -58,20 +58,25 @@ def equal_in_turns(evidence: Evidence) -> Iterator[Finding]:
         fit = relation(others, m.left_m, m.right_m, m.lasts_s)
         if fit is None or fit.explained < HELD:
             continue
-        yield Finding(
-            "treads_equal",
-            Level.WARNING,
-            f"v_left equals v_right in each row of {100 * odd.sum() / sharp.sum():.0f} % of the "
-            f"sharp turns, in which the robot turns by {turned_rad:.2g} rad; in others they differ",
-            "Both columns hold one speed in these turns: the mean of the treads, or one of them "
-            "twice",
-            "Log the speed of each tread; these turns are lost",
-            tuple(
-                (evidence.run_time_s(m.start_s[first]), evidence.run_time_s(m.end_s[end - 1]))
-                for first, end in runs_of(part)
-            ),
-        )
+        share = float(odd.sum() / sharp.sum())
+        spans_s = [(m.start_s[first], m.end_s[end - 1]) for first, end in runs_of(part)]
+        yield _finding(evidence, spans_s, share, turned_rad)
         return
+
+
+def _finding(
+    evidence: Evidence, spans_s: list[tuple[float, float]], share: float, turned_rad: float
+) -> Finding:
+    """Of a share of the sharp turns; the stamps of spans in which all speeds are equal."""
+    return Finding(
+        "treads_equal",
+        Level.WARNING,
+        f"v_left equals v_right in each row of {100 * share:.0f} % of the sharp turns, in which "
+        f"the robot turns by {turned_rad:.2g} rad; in others they differ",
+        "Both columns hold one speed in these turns: the mean of the treads, or one of them twice",
+        "Log the speed of each tread; these turns are lost",
+        tuple((evidence.run_time_s(begin), evidence.run_time_s(end)) for begin, end in spans_s),
+    )
 
 
 @dataclass(frozen=True)
