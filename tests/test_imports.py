@@ -102,8 +102,8 @@ def test_models_do_not_import_what_uses_them():
 ROOMS_IN_ORDER = {
     "odometry.gap": ("prepare", "locate", "fit", "name", "answer", "show"),
     "odometry.checks": (
-        *("findings", "evidence", "parts", "treads", "imu", "units", "copies", "stamps", "poses"),
-        *("settings", "unexplained"),
+        *("findings", "statistics", "evidence", "turns", "parts", "treads", "imu", "units"),
+        *("copies", "stamps", "poses", "settings", "unexplained"),
     ),
     "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
     "terrain.cli": ("texts", "verbs"),

@@ -7,7 +7,6 @@ are up to 0.2 s early against the gyroscope and at most 0.03 s late.
 from dataclasses import replace
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.late_positions import sure_lag
 from odometry.checks.stamps.timing import (
@@ -18,6 +17,7 @@ from odometry.checks.stamps.timing import (
     pose_period_s,
     timing,
 )
+from odometry.checks.statistics.lag import Lag
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run

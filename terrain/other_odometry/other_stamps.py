@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.evidence.lag import Signal, lag_between
+from odometry.checks.statistics.lag import Signal, lag_between
 from odometry.trajectory import Trajectory
 
 MOST_SHIFT_S = 3.5

@@ -11,8 +11,8 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import Relation, relation
 
 # Shares of the squares explained, at the best delay. Measured poses of 26 real recordings: 0.992
 # of the way and 0.995 of the turns at most; of a simulated robot with noise of 1 cm 0.999 of the

@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.checks.copies.repetition import Repetition, repetition
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import relation
-from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import relation
 from odometry.checks.treads.treads import EQUAL
+from odometry.checks.turns.turn_signs import lasting_turn_rad
 
 # Shares of the squares explained, of the second differences and of the values: at most 0.79 and
 # 0.97 in 74 real recordings.

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.copies.resampling import Sampled, low_pass, ways
-from odometry.checks.evidence.least_squares import least_squares
+from odometry.checks.statistics.least_squares import least_squares
 
 MOST_ROWS = 3000  # the liveliest ones, in which delay and filter are searched
 LEAST_ROWS = 100

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.evidence.measured_between import gaps_between
 from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion_between
-from odometry.checks.evidence.outliers import pose_outliers, without_spikes
 from odometry.checks.evidence.scatter import scattered
+from odometry.checks.statistics.measured_between import gaps_between
+from odometry.checks.statistics.outliers import pose_outliers, without_spikes
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import touched

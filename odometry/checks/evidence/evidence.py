@@ -16,8 +16,8 @@ from odometry.checks.evidence.heading import (
     turns_in_radians,
 )
 from odometry.checks.evidence.motion import Integrals, Motion, motion_between
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.evidence.scatter import scattered
+from odometry.checks.statistics.relation import Relation, relation
 
 ON_THE_SPOT = 0.3  # share of the difference of the treads: with less in common there is no course
 FAR_SHARE = 0.3  # share of the usual longest distance from which the course of a window is known

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 
 FAR = 0.3  # share of the usual longest distance from which the course of a window is known
 STRAIGHT_RAD = (0.3, 0.6, 1.0)  # windows that turn less have a course; the first with enough

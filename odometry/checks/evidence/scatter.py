@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import Relation
+from odometry.checks.statistics.relation import Relation
 
 LEAST_PAIRS = 8
 MOVING = 0.1  # share of the fast windows above which the robot moves

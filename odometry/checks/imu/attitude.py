@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import Relation, relation
 
 GRAVITY_M_S2 = 9.81
 SMOOTH_S = 2.0

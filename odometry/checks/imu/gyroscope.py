@@ -6,11 +6,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.gyroscope_bias import bias_by_poses, stationary_bias
-from odometry.checks.evidence.outliers import spikes
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.imu.held_rates import HELD, LIVELY, SAME, dead, held_in_turns, limit_of
 from odometry.checks.imu.rate_wander import rate_wander
+from odometry.checks.statistics.outliers import spikes
+from odometry.checks.turns.gyroscope_bias import bias_by_poses, stationary_bias
 
 LEAST_BIAS_RAD_S = 0.003
 LARGE_BIAS_RAD_S = 0.1

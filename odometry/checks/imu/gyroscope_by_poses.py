@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.heading_spans import heading_spans
-from odometry.checks.evidence.relation import Relation
-from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import Relation
+from odometry.checks.turns.heading_spans import heading_spans
+from odometry.checks.turns.turn_signs import lasting_turn_rad
 
 SPANS_S = (15.0, 5.0, 1.5)  # over which headings of gyroscope and poses are compared
 APART_RAD = 0.3  # good recordings stay below 0.21 (nine in ten spans)

@@ -8,12 +8,12 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.heading_spans import HeadingSpans, heading_spans
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend, changed, in_turn
 from odometry.checks.imu.gyroscope_by_poses import headings_apart
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.heading_spans import HeadingSpans, heading_spans
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.run import Run
 from odometry.sensors import GYRO_AXES

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
-from odometry.checks.evidence.turns_in_parts import turns_flip
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import (
     Mend,
@@ -16,6 +14,8 @@ from odometry.checks.findings.undo import (
     times,
     treads_times,
 )
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turns.turns_in_parts import turns_flip
 
 LEAST_FORWARDS = 0.5  # how clearly treads say which way is forwards
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation
 from odometry.checks.parts.changed_span import changed_span
 from odometry.checks.parts.changes import Change
 from odometry.checks.parts.span import Span
+from odometry.checks.statistics.relation import Relation
 
 WORSE, AT_LEAST = 1.1, 0.01  # times what is not explained, that another pair may be worse by
 Shares = dict[str, float]  # by pair of sensors

@@ -7,10 +7,10 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import relation
 from odometry.checks.parts.changes import Change
 from odometry.checks.parts.edges import Columns, exact_span
 from odometry.checks.parts.span import Span, best_rows
+from odometry.checks.statistics.relation import relation
 
 LEAST_WINDOWS = 20  # that both sensors measured
 LEAST_TURN_RAD = 1.0  # within the span, and outside

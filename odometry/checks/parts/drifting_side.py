@@ -7,11 +7,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS, Mend, changed
 from odometry.checks.parts.scale_courses import ScaleCourses, WayClock
+from odometry.checks.turns.measured_turns import measured_turns
 from odometry.run import Run
 
 # What a course of the scale of one tread leaves, as a share of what constant scales leave, and of

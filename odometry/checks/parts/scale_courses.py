@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import ORDINARY, ordinary_fit
 from odometry.checks.evidence.motion import Motion
+from odometry.checks.statistics.least_squares import ORDINARY, ordinary_fit
 
 KNOTS = 6  # of a scale, at equal steps of the way of both treads, a line between each two
 LEAST_WINDOWS = 60

@@ -7,7 +7,6 @@ from itertools import combinations
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.findings.finding import Finding
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.parts.drifting_side import drifting_side
@@ -15,6 +14,7 @@ from odometry.checks.parts.edges import Columns, exact_span
 from odometry.checks.parts.scale_courses import ScaleCourses, WayClock
 from odometry.checks.parts.scaled_side import change_of_scale, finding_of_scale
 from odometry.checks.parts.span import Span, best_rows
+from odometry.checks.turns.measured_turns import measured_turns
 
 EDGES = 31  # places of an end that are tried, of equal counts of windows
 LEAST_WINDOWS = 10  # inside, and outside

@@ -7,12 +7,12 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_yaw
-from odometry.checks.evidence.heading_spans import HeadingSpans, heading_spans
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend, changed
+from odometry.checks.statistics.relation import Relation, relation
+from odometry.checks.turns.heading_spans import HeadingSpans, heading_spans
 from odometry.run import Run
 
 SPANS_S = (5.0, 1.5)

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.checks.evidence.course_offsets import offset_beside_arm_rad, parts_apart
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import CONSISTENT, Heading, headings
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import Mend, changed, times, yaw_plus
+from odometry.checks.poses.course_offsets import offset_beside_arm_rad, parts_apart
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 
 OFF_RAD = np.radians(15)  # a lateral ICR or a sensor that is turned a little is no fault
 LEAST_FORWARDS = 0.5

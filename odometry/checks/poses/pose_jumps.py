@@ -7,7 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.steps import (
+from odometry.checks.findings.finding import Finding, Level, counted, disagreement
+from odometry.checks.poses.steps import (
     FAR_S,
     JITTER_S,
     JUMP_TIMES,
@@ -21,7 +22,6 @@ from odometry.checks.evidence.steps import (
     step_sizes,
     without_window_changes,
 )
-from odometry.checks.findings.finding import Finding, Level, counted, disagreement
 from odometry.windows.spans import runs_of, within
 
 LEAST_JUMP_M = 0.4

@@ -6,8 +6,6 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import across_m, along_m
-from odometry.checks.evidence.relation import pieces, relation
-from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import moved
 from odometry.checks.poses.coarse_part import coarse_part
@@ -15,7 +13,9 @@ from odometry.checks.poses.course import OFF_RAD
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
 from odometry.checks.poses.yaw_jumps import yaw_jumps
+from odometry.checks.statistics.relation import pieces, relation
 from odometry.checks.treads.one_motion import motion_alone
+from odometry.checks.units.swinging_sensor import swinging_sensor
 
 LEAST_ARM_M = 0.6
 LASTING = 0.4  # share of the swing that each piece of the recording has

@@ -7,9 +7,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_rad
-from odometry.checks.evidence.relation import Relation, relation
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import Relation, relation
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 
 MISSING = 0.1  # of what is measured along the other axis; good poses have 0.9 and more
 # Quantile of the windows, and its share of the drive: more is measured at times, till a border.

@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.measured_between import measured_between
 from odometry.windows.spans import touched
 
 GRID_S = 0.05

@@ -7,11 +7,11 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.gyroscope_bias import stationary_bias
 from odometry.checks.evidence.heading import far_and_straight, middle_rad
 from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend
+from odometry.checks.turns.gyroscope_bias import stationary_bias
 from odometry.run import Run
 
 MOST_RAD_S, LEAST_RAD_S = 0.15, 0.01

@@ -6,7 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.steps import (
+from odometry.checks.findings.finding import Finding, Level, counted, disagreement
+from odometry.checks.poses.steps import (
     FAR_S,
     JITTER_S,
     JUMP_TIMES,
@@ -16,7 +17,6 @@ from odometry.checks.evidence.steps import (
     rate_of,
     step_sizes,
 )
-from odometry.checks.findings.finding import Finding, Level, counted, disagreement
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import runs_of, within
 

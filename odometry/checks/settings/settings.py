@@ -6,10 +6,10 @@ from difflib import SequenceMatcher
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend, times
 from odometry.checks.stamps.stamps import tables_of
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
 ACCEL = ("accel_x", "accel_y", "accel_z")

@@ -6,9 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.evidence.motion import WINDOW_S
-from odometry.checks.evidence.relation import Relation
 from odometry.checks.findings.finding import Finding, disagreement
 from odometry.checks.stamps.held_treads import held_treads
 from odometry.checks.stamps.late_positions import apart_from_yaw
@@ -17,6 +15,8 @@ from odometry.checks.stamps.one_delay import answers, is_one_delay
 from odometry.checks.stamps.parts_of_poses import late_part, turns_in_step, yaw_late
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.timing import drifting, found_in, lags_of, pose_period_s
+from odometry.checks.statistics.lag import Lag
+from odometry.checks.statistics.relation import Relation
 
 OF_STAMPS = frozenset({"pose_late", "gyroscope_late", "clocks_apart"})
 # Shares of the squares not explained, and of the mean difference in the nine tenths of the windows

@@ -9,12 +9,12 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag, Rate, lag_of_rates
-from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.evidence.motion import WIDTH
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import changed
 from odometry.checks.stamps.timing import lag_of_treads
+from odometry.checks.statistics.lag import Lag, Rate, lag_of_rates
+from odometry.checks.statistics.measured_between import measured_between
 from odometry.windows.gaps import odometry_gaps
 
 LEAST_WIDTH_S = 0.5

@@ -4,9 +4,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS, Mend, changed, in_turn, sooner
+from odometry.checks.statistics.lag import Lag
 from odometry.run import Run
 
 GRID_S = 0.02

@@ -7,10 +7,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import MeasuredTurns, measured_turns
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import in_turn, sooner
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import MeasuredTurns, measured_turns
 
 GRID_S, MOST_S = 0.05, 1.5
 LEAST_S = 0.15  # of one column against the other

@@ -11,7 +11,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag, Signal
 from odometry.checks.stamps.late_stamps import CLEARLY, CONSTANTS_S, NAMES
 from odometry.checks.stamps.rates_by_delay import (
     GRID_S,
@@ -25,6 +24,7 @@ from odometry.checks.stamps.rates_by_delay import (
     width_s,
 )
 from odometry.checks.stamps.timing import headings_by_sensor
+from odometry.checks.statistics.lag import Lag, Signal
 
 REACH_S = 0.6  # of delays around the lag that was found
 LEAST_LAG_S = 0.1  # with less there is nothing to tell a delay from a filter

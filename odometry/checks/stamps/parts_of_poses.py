@@ -7,11 +7,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import positions_sooner, yaw_sooner
 from odometry.checks.stamps.late_positions import lag_beside_yaw
+from odometry.checks.statistics.lag import Lag
+from odometry.checks.statistics.relation import relation
 from odometry.geometry.angles import wrap
 
 ON_TIME_S = 0.15  # good poses are early by up to 0.11 s once constant delays are removed

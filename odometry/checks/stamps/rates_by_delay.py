@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Signal
 from odometry.checks.stamps.timing import pose_period_s
+from odometry.checks.statistics.lag import Signal
 
 GRID_S, STEP_S = 0.05, 0.02  # of the stamps at which rates are compared, and of delays
 LEAST_WIDTH_S = 0.3  # over which rates are taken

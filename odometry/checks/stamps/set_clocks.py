@@ -4,7 +4,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.stamps.late_stamps import CLEARLY
 from odometry.checks.stamps.rates_by_delay import (
     GRID_S,
@@ -20,6 +19,7 @@ from odometry.checks.stamps.rates_by_delay import (
     width_s,
 )
 from odometry.checks.stamps.timing import headings_by_sensor
+from odometry.checks.statistics.lag import Lag
 
 GROWTHS = np.linspace(0.6, 1.4, 9)  # of the growth that was found
 AROUND_S = 0.3  # of the lags that were found, at either end of the recording

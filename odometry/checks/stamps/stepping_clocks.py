@@ -7,7 +7,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_between import gaps_between
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import stamps_moved
 from odometry.checks.stamps.late_stamps import CLEARLY
@@ -19,6 +18,7 @@ from odometry.checks.stamps.rates_by_delay import (
 )
 from odometry.checks.stamps.set_clocks import left_by_delays
 from odometry.checks.stamps.timing import headings_by_sensor
+from odometry.checks.statistics.measured_between import gaps_between
 
 DELAYS_S = np.arange(-2.5, 2.51, 0.05)
 LEAST_S = 0.2  # of the step

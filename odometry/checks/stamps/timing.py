@@ -7,8 +7,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag, Signal, lag_between
-from odometry.checks.evidence.measured_between import measured_between
 from odometry.checks.findings.finding import Finding
 from odometry.checks.imu.gyroscope import held_s
 from odometry.checks.stamps.late_stamps import (
@@ -18,6 +16,8 @@ from odometry.checks.stamps.late_stamps import (
     pose_late,
     treads_apart,
 )
+from odometry.checks.statistics.lag import Lag, Signal, lag_between
+from odometry.checks.statistics.measured_between import measured_between
 
 LEAST_LAG_S = (
     0.15  # good lidar poses were found up to 0.11 s early after constant delays were removed

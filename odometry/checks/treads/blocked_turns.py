@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.gyroscope_bias import measured_bias_rad_s
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.treads.tread_motion import BLOCKED, is_read, moves_differently, times
+from odometry.checks.turns.gyroscope_bias import measured_bias_rad_s
 from odometry.windows.blocked_turns import BLOCKED_S, STANDS
 from odometry.windows.spans import runs_of
 

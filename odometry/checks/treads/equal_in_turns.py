@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import MeasuredTurns, measured_turns
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import MeasuredTurns, measured_turns
 from odometry.windows.spans import runs_of
 
 SHARP = 0.3  # of the sharpest turns: a robot that slips a little turns less

@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import LEAST_ANGLE_RAD
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import LEAST_ANGLE_RAD
 
 MOVING = 0.1  # of the ordinary fastest speed
 LEAST_TRAVEL_M = 2.0  # windows of `identify`

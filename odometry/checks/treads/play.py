@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import Columns
+from odometry.checks.statistics.least_squares import Columns
 from odometry.checks.treads.turns_by_treads import Turns, turns_by_treads
 
 STANDING = 0.01  # of the ordinary fastest speed

@@ -7,10 +7,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion, turns_both_ways
-from odometry.checks.evidence.relation import Relation, relation
-from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.treads.turns_by_treads import squares_by_parts
+from odometry.checks.turns.turn_signs import lasting_turn_rad
 
 SLOW, FAST = 0.25, 0.9  # shares of the ordinary fastest speed that are compared
 SQUARED = 4.0  # the same of squared speeds is 3.6: no motor is more bent

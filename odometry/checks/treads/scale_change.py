@@ -5,16 +5,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.evidence.constancy import uneven_way
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import TREADS, Mend, changed, in_turn
 from odometry.checks.findings.unit_tables import ORDINARY_FORWARD, RARE, of_wheels, tread_units
 from odometry.checks.parts.span import Span
+from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.treads.scaled_span import scaled_span
+from odometry.checks.turns.constancy import uneven_way
+from odometry.checks.turns.measured_turns import measured_turns
 from odometry.run import Run
 
 CHANGED = 1.4  # ratio of what a metre moves; in 23 real recordings along and in turns at most 1.3

@@ -4,21 +4,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.evidence.constancy import (
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.motion import turns_both_ways
+from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.findings.undo import Mend, changed, treads_times
+from odometry.checks.statistics.relation import Relation, pieces, relation
+from odometry.checks.treads.one_motion import motion_alone
+from odometry.checks.treads.side_changes import constant_as_well, side_changes
+from odometry.checks.treads.straight_drives import straight_drives
+from odometry.checks.turns.constancy import (
     HELD,
     UNEQUAL,
     groups_of_motion,
     ratio_of_sides,
     turns_of_each,
 )
-from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.motion import turns_both_ways
-from odometry.checks.evidence.relation import Relation, pieces, relation
-from odometry.checks.findings.finding import Finding, Level, disagreement
-from odometry.checks.findings.undo import Mend, changed, treads_times
-from odometry.checks.treads.one_motion import motion_alone
-from odometry.checks.treads.side_changes import constant_as_well, side_changes
-from odometry.checks.treads.straight_drives import straight_drives
 
 LEAST_OFFSET_M_S = 0.03
 TIMES = 5.0  # standard deviations

@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.turns.measured_turns import measured_turns
 from odometry.windows.spans import runs_of, touched
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands

@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import ordinary_fit
-from odometry.checks.evidence.measured_turns import MeasuredTurns, measured_turns
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.least_squares import ordinary_fit
+from odometry.checks.turns.measured_turns import MeasuredTurns, measured_turns
 
 SMOOTHED_S = (0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
 GRID_S = 0.05

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion, turns_both_ways
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.statistics.relation import relation
 
 # Of 31 real recordings the lower bounds are at most 0.046 (a Husky on deflated tyres), and 0.025 of
 # all but that one.

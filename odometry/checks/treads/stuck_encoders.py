@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import STUCK_S, measured_turns
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import relation
 from odometry.checks.treads.slow_speeds import or_slow, slow_speeds_zero
+from odometry.checks.turns.measured_turns import STUCK_S, measured_turns
 from odometry.windows.spans import constant_spans, runs_of
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands

@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import Relation, relation
 from odometry.windows.gaps import REPEATS
 from odometry.windows.spans import constant_spans, within
 

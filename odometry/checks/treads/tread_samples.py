@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.outliers import peaks, spikes
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import TREADS, changed, in_turn
+from odometry.checks.statistics.outliers import peaks, spikes
 from odometry.checks.treads.slow_speeds import EDGE, least_read_m_s
 from odometry.speed_step import step_of
 from odometry.windows.spans import runs_of

@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.turn_signs import lasting_turn_rad
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.turns.turn_signs import lasting_turn_rad
 from odometry.speed_step import speed_step_m_s
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed

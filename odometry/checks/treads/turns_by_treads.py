@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import least_squares
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.once import once
+from odometry.checks.statistics.least_squares import least_squares
+from odometry.checks.turns.measured_turns import measured_turns
 
 LEAST_WINDOWS = 40
 ORDINARY = 0.97  # share of the windows that are compared: those that the treads explain best

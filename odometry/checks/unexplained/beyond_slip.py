@@ -6,8 +6,8 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import Heading, middle_yaw
 from odometry.checks.evidence.motion import Motion, motion_between
-from odometry.checks.evidence.relation import Relation, relation
 from odometry.checks.evidence.scatter import noise_of_ends
+from odometry.checks.statistics.relation import Relation, relation
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import touched
 

@@ -2,15 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from odometry.checks.evidence.carried import carried_along
-from odometry.checks.evidence.constancy import uneven_map, uneven_yaw
-from odometry.checks.evidence.course_offsets import course_apart, yaw_wanders
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.turns_in_parts import turns_flip
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.imu.gyroscope import drifts_at_rest
 from odometry.checks.imu.gyroscope_by_poses import headings_apart, scales_apart
+from odometry.checks.poses.course_offsets import course_apart, yaw_wanders
 from odometry.checks.poses.yaw_drift import course_drifts
 from odometry.checks.treads.play import play
 from odometry.checks.treads.proportion import (
@@ -20,6 +17,8 @@ from odometry.checks.treads.proportion import (
 )
 from odometry.checks.treads.side_changes import side_changes
 from odometry.checks.treads.tread_samples import peaks_often
+from odometry.checks.turns.constancy import uneven_map, uneven_yaw
+from odometry.checks.turns.turns_in_parts import turns_flip
 from odometry.checks.unexplained.beyond_slip import beyond_slip
 from odometry.checks.unexplained.little_explained import little_explained
 from odometry.checks.unexplained.moments_of_spin import moments_of_spin
@@ -31,6 +30,7 @@ from odometry.checks.unexplained.position_differences import (
 from odometry.checks.unexplained.repeated_rows import repeated_rows
 from odometry.checks.unexplained.scale_drift import scale_drifts
 from odometry.checks.unexplained.way_drift import way_drifts
+from odometry.checks.units.carried import carried_along
 
 
 def sensors_disagree(evidence: Evidence, found: Sequence[Finding]) -> Iterator[Finding]:

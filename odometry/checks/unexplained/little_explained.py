@@ -7,9 +7,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import Relation
 from odometry.checks.evidence.scatter import noise_of_ends
-from odometry.checks.evidence.turn_signs import lasting_turn_rad
+from odometry.checks.statistics.relation import Relation
+from odometry.checks.turns.turn_signs import lasting_turn_rad
 
 # Shares of the squares that are explained at least, in the nine tenths of the windows that are
 # explained best. Least of 14 and of 12 real recordings, ice and sand among them: 0.90 and 0.93 of

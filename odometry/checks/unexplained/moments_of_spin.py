@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import measured_turns
 
 # Rows of windows of half a second, between which such a moment lies: both ends are ordinary.
 REACH, LONGEST_S = 2, 5.0

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.steps import reckoned, without_window_changes
+from odometry.checks.poses.steps import reckoned, without_window_changes
 
 SPAN_S = 10.0
 LEAST_M = 1.5  # besides the share of the travel

@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import measured_turns
 from odometry.windows.spans import touched
 
 # Rows of a stretch, and of them those in which both speeds are new ones, and those that differ: of

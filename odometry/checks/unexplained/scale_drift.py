@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import measured_turns
 
 PARTS, FEWEST = 8, 6
 CERTAIN = 8.0  # standard deviations

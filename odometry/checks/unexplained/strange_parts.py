@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import BoolArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_yaw
-from odometry.checks.evidence.relation import Relation
+from odometry.checks.statistics.relation import Relation
 
 LONGEST_S = 20.0
 BESIDE_S = 1.0  # of a jump, that is left out

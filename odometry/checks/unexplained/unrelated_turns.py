@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation, relation
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
-from odometry.checks.evidence.turns_in_parts import turns_flip
 from odometry.checks.findings.finding import Finding, Level, disagreement
+from odometry.checks.statistics.relation import Relation, relation
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
+from odometry.checks.turns.turns_in_parts import turns_flip
 from odometry.checks.unexplained.beyond_slip import beyond_slip
 
 POOR = 0.6  # correlation below which sensors do not measure the same motion

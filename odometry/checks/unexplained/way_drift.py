@@ -8,10 +8,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.measured_turns import measured_turns
 
 PARTS, FEWEST = 8, 6  # of the way
 KNOWN = 0.2  # standard deviation of a factor that counts

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 from odometry.checks.units.effective_width import WIDTH
 
 MOVING = 0.01  # of the ordinary fastest speed: slower is noise of a tread that stands

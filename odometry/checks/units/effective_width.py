@@ -1,10 +1,10 @@
 """The width as which a robot turns, and a track width that it does not go with."""
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation, pieces
-from odometry.checks.evidence.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.unit_tables import matching, tread_units
+from odometry.checks.statistics.relation import Relation, pieces
+from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.units.unit_findings import SLIP_OR_TRACK, too_fast, tread_unit
 
 # Robots that were measured turn as if 1.0 to 3.1 times as wide, on snow 10 times as wide.

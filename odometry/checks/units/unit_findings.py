@@ -5,7 +5,6 @@ import numpy as np
 from odometry.bags.wheel_names import UNITS
 from odometry.checks.evidence.evidence import CLEARLY, Evidence
 from odometry.checks.evidence.heading import CONSISTENT, headings
-from odometry.checks.evidence.relation import relation
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import gyroscope_times, times, treads_times
@@ -19,6 +18,7 @@ from odometry.checks.findings.unit_tables import (
     matching,
     tread_units,
 )
+from odometry.checks.statistics.relation import relation
 
 WIDEST_M = 50.0  # no robot is wider
 FARTHEST = 1.1  # the same, at most: 0.92 to 1.02 where real robots drive straight

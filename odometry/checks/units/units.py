@@ -4,11 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from odometry.checks.evidence.carried import carried_along
-from odometry.checks.evidence.constancy import one_side, uneven_gyroscope, uneven_way
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import Relation, pieces
-from odometry.checks.evidence.swinging_sensor import swinging_sensor
 from odometry.checks.findings.finding import Finding, Level, disagreement
 from odometry.checks.findings.undo import times
 from odometry.checks.findings.unit_tables import (
@@ -22,7 +18,10 @@ from odometry.checks.findings.unit_tables import (
     matching,
     tread_units,
 )
+from odometry.checks.statistics.relation import Relation, pieces
 from odometry.checks.treads.proportion import holds_the_mean
+from odometry.checks.turns.constancy import one_side, uneven_gyroscope, uneven_way
+from odometry.checks.units.carried import carried_along
 from odometry.checks.units.constant_along import reads_less, turns_less
 from odometry.checks.units.effective_width import (
     ORDINARY_WIDTH,
@@ -33,6 +32,7 @@ from odometry.checks.units.effective_width import (
     width_factor,
 )
 from odometry.checks.units.factor_along import farther_along, scale_along, slip_along
+from odometry.checks.units.swinging_sensor import swinging_sensor
 from odometry.checks.units.unit_findings import (
     beyond_treads,
     gyroscope_unit,

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.course_offsets import course_apart
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.poses.course_offsets import course_apart
 from odometry.checks.recording import check_recording
 from odometry.run import Run
 from tests.blind.any_robot import write_clean_run

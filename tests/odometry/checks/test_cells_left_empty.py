@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_between import gaps_between, measured_between
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.timing import lags_of
+from odometry.checks.statistics.measured_between import gaps_between, measured_between
 from tests.odometry.checks.drives import driven, varied
 from tests.odometry.checks.faulty import gyroscope, put, yaw
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.constancy import uneven_map
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.turns.constancy import uneven_map
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round
 from tests.odometry.checks.faulty import positions, put

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.constancy import uneven_map
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.late_stamps import followed
+from odometry.checks.turns.constancy import uneven_map
 from odometry.run import Robot, Run
 from tests.odometry.checks.answers import UNKNOWN, warnings
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw

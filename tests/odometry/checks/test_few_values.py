@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.constancy import uneven_way
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.poses.map_lines import drawn_to_lines
 from odometry.checks.recording import check_recording
+from odometry.checks.turns.constancy import uneven_way
 from tests.odometry.checks.drives import drive, turning_all_round, varied, winding
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, without_gyroscope, yaw
 

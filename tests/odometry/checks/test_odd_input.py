@@ -8,10 +8,10 @@ import pytest
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import motion_between
-from odometry.checks.evidence.steps import step_sizes
 from odometry.checks.findings.catalogue import CATALOGUE
 from odometry.checks.findings.consequences import CONSEQUENCES
 from odometry.checks.findings.finding import Level
+from odometry.checks.poses.steps import step_sizes
 from odometry.checks.recording import check_recording
 from odometry.run import Robot, Run
 from odometry.table import Table

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.outliers import pose_outliers
-from odometry.checks.evidence.relation import relation
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
+from odometry.checks.statistics.outliers import pose_outliers
+from odometry.checks.statistics.relation import relation
 from tests.odometry.checks.drives import PERIOD_S, drive, winding
 from tests.odometry.checks.faulty import gyroscope, put, treads, without_gyroscope
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.turns_in_parts import turns_flip
 from odometry.checks.findings.finding import Level
 from odometry.checks.poses.position_axes import position_axes
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.tread_motion import tread_motion
+from odometry.checks.turns.turns_in_parts import turns_flip
 from odometry.checks.unexplained.scale_drift import scale_drifts
 from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, without_gyroscope, yaw

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.timing import found_in
+from odometry.checks.statistics.lag import Lag
 from odometry.run import Run
 from tests.odometry.checks.drives import turning_all_round
 from tests.odometry.checks.faulty import pose_stamps

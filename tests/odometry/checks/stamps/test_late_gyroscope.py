@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.late_stamps import pose_late
+from odometry.checks.statistics.lag import Lag
 from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import later
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.lag import Lag
 from odometry.checks.findings.finding import Level
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.rates_by_delay import left_by_any_growing
 from odometry.checks.stamps.set_clocks import step_of_lag
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
+from odometry.checks.statistics.lag import Lag
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import stepping
 from tests.odometry.checks.faulty import pose_stamps, put

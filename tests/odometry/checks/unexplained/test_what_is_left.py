@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.constancy import uneven_map, uneven_yaw
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.sides import sides
 from odometry.checks.treads.tread_samples import peaks_often
+from odometry.checks.turns.constancy import uneven_map, uneven_yaw
 from odometry.checks.unexplained.disagreement import lasting_disagreements
 from odometry.checks.unexplained.little_explained import little_explained
 from odometry.checks.unexplained.repeated_rows import repeated_rows

@@ -6,8 +6,8 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import relation
-from odometry.checks.evidence.turn_signs import LEAST_TURN_RAD
+from odometry.checks.statistics.relation import relation
+from odometry.checks.turns.turn_signs import LEAST_TURN_RAD
 
 PARTS = 8
 CERTAIN = 8.0  # standard deviations

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.least_squares import Columns, least_squares, of_products
 from odometry.checks.evidence.once import once
+from odometry.checks.statistics.least_squares import Columns, least_squares, of_products
 from odometry.checks.unexplained import disagreement
 from tests.odometry.checks.drives import winding
 

@@ -7,10 +7,10 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.measured_turns import measured_turns
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import Relation, relation
+from odometry.checks.statistics.relation import Relation, relation
+from odometry.checks.turns.measured_turns import measured_turns
 
 MOVING = 0.1  # of the ordinary fastest window
 EARLY = 0.3  # share of the windows, at either end of the recording

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.steps import jumps_by_itself
+from odometry.checks.poses.steps import jumps_by_itself
 
 RATE_HZ = 10.0
 

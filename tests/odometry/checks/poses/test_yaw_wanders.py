@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from odometry.checks.evidence.course_offsets import yaw_wanders
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.poses.course_offsets import yaw_wanders
 from tests.odometry.checks.drives import PERIOD_S, drive, winding
 from tests.odometry.checks.faulty import put, yaw
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.lag import _correlations, lag_between
+from odometry.checks.statistics.lag import _correlations, lag_between
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 from odometry.windows.spans import runs_of
 
 STUCK_S = 2.0  # that a tread keeps its value, and that another sensor contradicts it

@@ -5,7 +5,7 @@ from dataclasses import replace
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import Heading, across_m, along_m, headings
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 
 # Metres along the course, and along the yaw, for each one of the treads: 0.01 to 0.06, and 0.96 to
 # 0.98, of a robot that pivots with a sensor two lengths ahead or behind. On ice robots have 0.24.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.evidence.least_squares import Columns, least_squares, of_products
+from odometry.checks.statistics.least_squares import Columns, least_squares, of_products
 
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out

@@ -13,7 +13,7 @@ from odometry.checks.evidence.heading import (
     middle_yaw,
 )
 from odometry.checks.evidence.motion import Motion
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 
 LEAST_SPANS = 30
 PIECES = 8  # of the recording, in each of which yaw has one offset to the course

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import CLEARLY, Evidence
 from odometry.checks.evidence.once import once
-from odometry.checks.evidence.relation import Relation
+from odometry.checks.statistics.relation import Relation
 
 LEAST_TURN_RAD = 1.0  # summed turns below which nothing is said
 UNRELATED = (

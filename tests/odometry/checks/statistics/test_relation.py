@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.checks.evidence.relation import PIECES, pieces, relation
+from odometry.checks.statistics.relation import PIECES, pieces, relation
 
 
 def test_against_the_normal_equations_without_outliers(rng):

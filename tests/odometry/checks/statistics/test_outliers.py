@@ -1,6 +1,6 @@
 import numpy as np
 
-from odometry.checks.evidence.outliers import spikes, without_spikes
+from odometry.checks.statistics.outliers import spikes, without_spikes
 
 
 def test_one_sample_far_out_is_a_spike_and_a_step_is_none(rng):

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.relation import relation
+from odometry.checks.statistics.relation import relation
 
 DRIFT = 0.15  # of the fastest tread speed: slower drifts are left to slip
 HOLDS = 0.9  # correlation, and least ratio, of turns

@@ -1,0 +1,1 @@
+"""Relations, lags and outliers of measured columns, whatever they measure."""
