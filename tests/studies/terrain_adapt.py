@@ -39,6 +39,7 @@ def read(folder: Path, per_photo: int, store: Path) -> Grounds:
         patches = load_patches(find_photos(folder), SIZE_PX, per_photo)
         bank = both_features(patches.images)
         names = [str(photo) for photo in patches.photos]
+        store.mkdir(parents=True, exist_ok=True)
         np.savez(file, bank[:, :0], bank, patches.labels, patches.groups, names)
     with np.load(file) as arrays:
         return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))

@@ -69,6 +69,7 @@ def read_grounds(folder: Path, size_px: int, store: Path) -> Grounds:
         plain = shared_feature_matrix(patches.images, PRESETS["chen2023"].features, **shared)
         bank = both_features(patches.images)
         names = [str(photo) for photo in patches.photos]
+        store.mkdir(parents=True, exist_ok=True)
         np.savez(file, plain, bank, patches.labels, patches.groups, names)
         print(f"{folder.name}: {len(patches.too_small)} photographs smaller than {size_px} px")
     with np.load(file) as arrays:
@@ -82,6 +83,7 @@ def read_copies(folder: Path, size_px: int, store: Path) -> Grounds:
         copies = load_copies(find_photos(folder), size_px, Augmentation())
         bank = both_features(copies.images)
         names = [str(photo) for photo in copies.photos]
+        store.mkdir(parents=True, exist_ok=True)
         np.savez(file, bank, copies.labels, copies.groups, names)
     with np.load(file) as arrays:
         bank, labels, groups, names = (arrays[f"arr_{i}"] for i in range(4))
