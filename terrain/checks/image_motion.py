@@ -22,6 +22,7 @@ from terrain.checks.unrelated_images import (
     agrees,
     unexplained,
     unrelated_images,
+    upside_down,
     varies,
 )
 
@@ -60,10 +61,13 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     steps = ground_steps(run, camera, views)
     motion = ImageMotion(run, steps) if len(steps) >= FEWEST_PAIRS else None
     why = _doubt(motion, steps)
+    others: list[Finding] = []
     if why:
         others = list(unrelated_images(run, camera, views, steps))
-        if others:
-            return poor + others, ""
+    elif not steps.is_steady:  # upside down, it may move much as the treads do, and change its size
+        others = list(upside_down(run, camera, views))
+    if others:
+        return poor + others, ""
     found: list[Finding] = []
     if motion is not None and why == _DISAGREE:
         found = list(wrong_lens(motion, camera, agrees=False))

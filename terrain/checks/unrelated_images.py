@@ -49,16 +49,9 @@ def unrelated_images(
     A camera that rocks, and a robot that always moves in the same way, cannot be distinguished
     from images of another drive: nothing is said of them.
     """
-    if _shows(run, ground_steps(run, camera, views.upside_down())):
-        yield Finding(
-            "images_upside_down",
-            Level.WARNING,
-            "the terrain moves through the images as the treads moved the robot only when they are "
-            "turned by half a turn",
-            "Images are upside down: the camera hangs, its driver or a note in the files (EXIF) "
-            "turns them, or the mount's roll is off by 180 degrees",
-            "Turn the images by half a turn, or add 180 degrees to the roll of the mount",
-        )
+    turned = list(upside_down(run, camera, views))
+    yield from turned
+    if turned:
         return
     by_name = _by_name(run)
     if by_name is not None and _shows(by_name, ground_steps(by_name, camera, views)):
@@ -77,6 +70,39 @@ def unrelated_images(
             yield _of_another_drive(steps)
     else:
         yield from _in_no_order(run, camera, views, steps)
+
+
+def upside_down(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Finding]:
+    """Images that show the motion of the treads once they are turned by half a turn, or flipped.
+
+    Parameters
+    ----------
+    run : Run
+    camera : Camera
+    views : TerrainViews
+        Of the images as they are.
+    """
+    steps = ground_steps(run, camera, views.upside_down())
+    if _shows(run, steps):
+        how = "turned by half a turn"
+        cause = (
+            "Images are upside down: the camera hangs, its driver or a note in the files (EXIF) "
+            "turns them, or the mount's roll is off by 180 degrees"
+        )
+        remedy = "Turn the images by half a turn, or add 180 degrees to the roll of the mount"
+    elif _shows(run, replace(steps, steps=steps.steps * [1.0, -1.0, -1.0])):
+        how, cause = "flipped", "Images are flipped: their top row is the last one"
+        remedy = "Flip the images back, top to bottom"
+    else:
+        return
+    yield Finding(
+        "images_upside_down",
+        Level.WARNING,
+        "the terrain moves through the images as the treads moved the robot only when they are "
+        + how,
+        cause,
+        remedy,
+    )
 
 
 def _shows(run: Run, steps: GroundSteps) -> bool:

@@ -10,6 +10,7 @@ import pytest
 import terrain
 from odometry.run import Run
 from terrain.camera.camera import Camera
+from terrain.checks import image_motion as image_motion_file
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion
@@ -180,15 +181,23 @@ def test_what_other_warnings_explain_is_not_compared(drive):
     assert any("see the warnings" in words for words in report.skipped)
 
 
-def test_images_upside_down_are_named(drive, camera, tmp_path):
+@pytest.mark.parametrize(("axes", "cause"), [(-1, "the camera hangs"), (0, "top row is the last")])
+def test_images_upside_down_are_named(drive, camera, tmp_path, axes, cause):
     folder = tmp_path / "run"
     shutil.copytree(drive.folder, folder)
     for path in sorted((folder / "images").iterdir()):
-        cv2.imwrite(str(path), cv2.flip(cv2.imread(str(path)), -1))
-    assert set(found(Run.read(folder), camera)) == {"images_upside_down"}
+        cv2.imwrite(str(path), cv2.flip(cv2.imread(str(path)), axes))
+    findings = found(Run.read(folder), camera)
+    assert set(findings) == {"images_upside_down"}
+    assert cause in findings["images_upside_down"].cause
 
 
 def test_a_mount_that_is_rolled_by_half_a_turn_is_named(drive, camera):
+    assert set(found(drive, moved(camera, 3, lambda roll: roll + np.pi))) == {"images_upside_down"}
+
+
+def test_images_upside_down_that_move_nearly_as_the_treads_do_are_named(drive, camera, monkeypatch):
+    monkeypatch.setattr(image_motion_file, "_doubt", lambda *_: "")
     assert set(found(drive, moved(camera, 3, lambda roll: roll + np.pi))) == {"images_upside_down"}
 
 
