@@ -31,6 +31,7 @@ RIGHT |= {
     "reversed": "images_reversed",
     "as it is": "",
     "pitch": "camera_lens",
+    "roll": "images_upside_down",
 }
 
 
@@ -75,6 +76,7 @@ def faults(run, camera):
     for degrees in (-5, 5):
         turn = np.radians(degrees)
         yield f"pitch by {degrees}", run, moved(camera, 4, lambda pitch, turn=turn: pitch + turn)
+    yield "roll by 180", run, moved(camera, 3, lambda roll: roll + np.pi)
     yield "reversed", with_images(run, file=files[::-1].copy()), camera
     yield "half a run off", with_images(run, file=np.roll(files, len(files) // 2)), camera
 
