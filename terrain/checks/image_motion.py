@@ -65,7 +65,7 @@ def image_motion(run: Run, camera: Camera) -> tuple[list[Finding], str]:
     if why:
         others = list(unrelated_images(run, camera, views, steps))
     elif not steps.is_steady:  # upside down, it may move much as the treads do, and change its size
-        others = list(upside_down(run, camera, views))
+        others = list(upside_down(run, camera, views, steps))
     if others:
         return poor + others, ""
     found: list[Finding] = []

@@ -28,6 +28,10 @@ VARIED = 1.5  # of even motion's loss for each pair [nats]: robots that wind hav
 # straight drive has 0.7, with which the images of another straight drive agree by chance
 # Of it: own images leave 0.3 at most, by a steady camera; those of another drive 0.6 to 1.2
 UNEXPLAINED = 0.5
+# The same where terrain keeps its size in images that are turned, and in none as they are: they
+# may be of a camera that rocks, whose own images leave 0.63 and 0.66
+ROCKING = 0.75
+RESIZED = 0.05  # of the scale between two images, beyond doubt: turned ones have 0.12 to 0.37
 # Factor of the size, and of the turn, by which images that are put right may still be off (a mount
 # measured badly, treads that slip), and their direction
 OTHER, ASIDE_RAD, SURE = 2.0, float(np.radians(45.0)), 4.0
@@ -49,7 +53,7 @@ def unrelated_images(
     A camera that rocks, and a robot that always moves in the same way, cannot be distinguished
     from images of another drive: nothing is said of them.
     """
-    turned = list(upside_down(run, camera, views))
+    turned = list(upside_down(run, camera, views, steps))
     yield from turned
     if turned:
         return
@@ -72,7 +76,9 @@ def unrelated_images(
         yield from _in_no_order(run, camera, views, steps)
 
 
-def upside_down(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Finding]:
+def upside_down(
+    run: Run, camera: Camera, views: TerrainViews, as_they_are: GroundSteps
+) -> Iterator[Finding]:
     """Images that show the motion of the treads once they are turned by half a turn, or flipped.
 
     Parameters
@@ -80,17 +86,20 @@ def upside_down(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Findi
     run : Run
     camera : Camera
     views : TerrainViews
-        Of the images as they are.
+    as_they_are : GroundSteps
+        By these images, not turned.
     """
     steps = ground_steps(run, camera, views.upside_down())
-    if _shows(run, steps):
+    changed, turned = (abs(of.scale[0]) if len(of) else 0.0 for of in (as_they_are, steps))
+    most = ROCKING if changed > RESIZED and turned < STEADY else UNEXPLAINED
+    if _shows(run, steps, most):
         how = "turned by half a turn"
         cause = (
             "Images are upside down: the camera hangs, its driver or a note in the files (EXIF) "
             "turns them, or the mount's roll is off by 180 degrees"
         )
         remedy = "Turn the images by half a turn, or add 180 degrees to the roll of the mount"
-    elif _shows(run, replace(steps, steps=steps.steps * [1.0, -1.0, -1.0])):
+    elif _shows(run, replace(steps, steps=steps.steps * [1.0, -1.0, -1.0]), most):
         how, cause = "flipped", "Images are flipped: their top row is the last one"
         remedy = "Flip the images back, top to bottom"
     else:
@@ -105,20 +114,21 @@ def upside_down(run: Run, camera: Camera, views: TerrainViews) -> Iterator[Findi
     )
 
 
-def _shows(run: Run, steps: GroundSteps) -> bool:
+def _shows(run: Run, steps: GroundSteps, most: float = UNEXPLAINED) -> bool:
     """Whether steps between images are those of the robot, beyond doubt."""
     if len(steps) < FEWEST_PAIRS:
         return False
-    return agrees(ImageMotion(run, steps))
+    return agrees(ImageMotion(run, steps), most)
 
 
-def agrees(motion: ImageMotion) -> bool:
+def agrees(motion: ImageMotion, most: float = UNEXPLAINED) -> bool:
     """Whether the treads explain the motion in images, in its size, direction and turn.
 
-    A view that stays, and one that drifts aside, leave nothing unexplained by a step of no size.
+    At most so much may be left unexplained. A view that stays, and one that drifts aside, leave
+    nothing unexplained by a step of no size.
     """
     moves = motion.plain_even_loss > SOME * len(motion.steps)
-    if not (moves and unexplained(motion) < UNEXPLAINED):
+    if not (moves and unexplained(motion) < most):
         return False
     gain, gain_sd, turn, turn_sd = motion.plain_gains
     turns = turn + SURE * turn_sd > 1 / OTHER and turn - SURE * turn_sd < OTHER

@@ -201,6 +201,18 @@ def test_images_upside_down_that_move_nearly_as_the_treads_do_are_named(drive, c
     assert set(found(drive, moved(camera, 3, lambda roll: roll + np.pi))) == {"images_upside_down"}
 
 
+def test_images_upside_down_of_a_camera_that_rocks_are_named_by_the_size_of_the_terrain(
+    drive, camera, monkeypatch
+):
+    hangs = moved(camera, 3, lambda roll: roll + np.pi)
+    views = TerrainViews(drive, camera.image_size)
+    changed = ground_steps(drive, hangs, views)
+    monkeypatch.setattr(unrelated_images, "unexplained", lambda _: 0.65)
+    assert [one.name for one in unrelated_images.upside_down(drive, hangs, views, changed)]
+    kept = replace(changed, scales=np.ones(len(changed)))
+    assert not list(unrelated_images.upside_down(drive, hangs, views, kept))
+
+
 def test_motion_that_agrees_poorly_is_not_taken_for_checked(drive, camera, monkeypatch):
     monkeypatch.setattr(ImageMotion, "noise", POOR + 0.5)
     findings, skipped = image_motion(drive, camera)
