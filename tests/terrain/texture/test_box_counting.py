@@ -7,7 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from terrain.texture.box_counting import box_counts, byte_histogram, fractal_dimension
+from terrain.texture.box_counting import (
+    box_counts,
+    byte_histogram,
+    count_bytes,
+    fractal_dimension,
+)
 
 byte_images = arrays(np.uint8, array_shapes(min_dims=2, max_dims=2, max_side=19))
 
@@ -72,3 +77,10 @@ def test_planes_are_counted_as_each_alone(shape, rng):
     planes[3] = 255
     alone = np.stack([box_counts(plane) for plane in planes])
     np.testing.assert_array_equal(box_counts(planes), alone)
+
+
+def test_each_value_of_a_plane_is_counted():
+    plane = np.repeat(np.arange(256, dtype=np.uint8), np.arange(256) % 3 + 1)[None]
+    histograms = np.zeros((1, 256), np.float32)
+    count_bytes([plane], histograms)
+    assert histograms[0].tolist() == (np.arange(256) % 3 + 1).tolist()
