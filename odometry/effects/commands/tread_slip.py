@@ -48,6 +48,10 @@ class SlipBySpeed(TreadSlip):
         most = 1 / self.fastest_m_s
         return (EffectParameter("growth", "s/m", -most, most, 0.0, 0.01),)
 
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: slip is no gain, as of an encoder that loses counts."""
+        return bool(values[0] >= 0.0)
+
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`."""
         speeds = inputs.tread_speeds_m_s
@@ -87,6 +91,10 @@ class SlipByAcceleration(TreadSlip):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         return (EffectParameter("growth", "s^2/m", -2.0, 2.0, 0.0, 0.02),)
+
+    def is_meant(self, values: FloatArray) -> bool:
+        """See `Effect.is_meant`: treads that slip are behind in starts, and not ahead."""
+        return bool(values[0] >= 0.0)
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `CommandEffect.tread_speeds`; the acceleration is a difference over 0.2 s."""

@@ -1,6 +1,7 @@
 """Slip by a tread's own motion, by closed forms."""
 
 import numpy as np
+import pytest
 
 from odometry.effects.commands.tread_slip import SlipByAcceleration, SlipByDirection, SlipBySpeed
 from odometry.models.inputs import Inputs
@@ -32,3 +33,10 @@ def test_by_acceleration_a_ramp_loses_one_share_and_a_steady_speed_none():
     np.testing.assert_allclose(shares[ramp], 0.9, atol=1e-12)
     np.testing.assert_allclose(shares[steady], 1.0, atol=1e-12)
     np.testing.assert_allclose(shares[brake], 1.1, atol=1e-12)
+
+
+@pytest.mark.parametrize("slip", [SlipBySpeed(), SlipByAcceleration()])
+def test_a_gain_is_no_slip(slip):
+    """An encoder that loses counts at speed, treads that are ahead in starts."""
+    assert slip.is_meant(np.array([0.1]))
+    assert not slip.is_meant(np.array([-0.1]))
