@@ -8,23 +8,17 @@ from odometry.gap.smooth_config import SmoothConfig
 POSITIVE = (
     *("horizon_s", "part_s", "least_evidence", "least_excess", "near_bound", "sure", "surely"),
     *("far_off", "equivalent_margin", "general_margin", "unexplained", "left_over"),
-    *("contact_spread", "turns_above", "turns_times", "hardly", "uneven"),
+    *("contact_spread", "turns_above", "turns_times", "hardly", "uneven", "disagreeing"),
+    "surely_disagreeing",
 )
 SHARES = (
     *("least_share", "least_rest", "first_share", "mostly_closed", "bursts_closed", "least_floor"),
     *("events_predicted", "least_held_out", "least_of_rest", "least_of_all", "most_without"),
     *("most_beaten", "least_better", "least_beside", "main_part", "one_sided", "no_farther"),
-    *("much_farther", "largest_growth", "base_probability"),
-    *("least_odds", "sure_odds", "still_off"),
+    *("much_farther", "largest_growth", "base_probability", "least_odds", "sure_odds", "still_off"),
 )
-FEWEST = {
-    "folds": 2,
-    "held_back": 2,
-    "most_poses": 2,
-    "trimmed": 1,
-    "most_effects": 1,
-    "most_windows": 20,
-}
+FEWEST = {"folds": 2, "held_back": 2, "most_poses": 2, "most_windows": 20}
+FEWEST |= {"trimmed": 1, "most_effects": 1}
 
 
 @dataclass(frozen=True)
@@ -137,6 +131,10 @@ class GapConfig(SmoothConfig):
         Spread of the strength of a name between pieces of the runs, as a share of it, above which
         it is no one strength; and the probability by chance below which that counts. Right names
         differ by 0.25 at most, a constant delay in the place of a clock that was set by 0.37.
+    disagreeing, surely_disagreeing : float
+        Difference between the strengths of a name that two measures show, as a share of it, above
+        which it is no one strength; and the standard deviations that it must be. Right names
+        differ by DEV at most, poses that are smoothed in the place of a bent yaw by 0.8.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float
@@ -220,6 +218,8 @@ class GapConfig(SmoothConfig):
     event_nodes: tuple[int, ...] = (40, 80, 160)
     uneven: float = 0.3
     uneven_probability: float = 0.001
+    disagreeing: float = 0.3
+    surely_disagreeing: float = 4.0
     base_probability: float = 0.001
     brought_back: float = 0.25
     contact_spread: float = 1.1

@@ -15,6 +15,7 @@ from odometry.effects.measurement.sensor_mount import LeverArm
 from odometry.effects.motion.lateral_skid import LateralSkid
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.agreement import disagreement
 from odometry.gap.fit.contest import cost_of, margin_of, penalty
 from odometry.gap.fit.course import CHOSEN, best_course
 from odometry.gap.fit.effect_values import essence_spans_none, is_meant
@@ -29,6 +30,7 @@ from odometry.gap.name.form_gates import (
     is_even,
     is_most_of,
     is_of_stamps,
+    is_one_to_all,
     is_special,
     is_sure_of_its_essence,
 )
@@ -71,10 +73,18 @@ def _of_no_form(search: Search, found: Explanation, alone: Fitted, place: int) -
     return (
         is_even(of, search.config)
         or is_meant(added)
+        or _is_one_to_all(search, alone, place)
         or is_of_stamps(added, others, search.fitter.measured.scenes)
         or lacks_essence(search.fitter, alone, place, search.config)
         or slow_course_in_place(search, alone, place)
     )
+
+
+def _is_one_to_all(search: Search, alone: Fitted, place: int) -> str:
+    """Why measures of an effect disagree; forces of contacts are right and imperfect."""
+    if alone.effects[place].effect.slow:
+        return ""
+    return is_one_to_all(disagreement(search.fitter, alone, place), search.config)
 
 
 def lacks_essence(fitter: Fitter, fit: Fitted, place: int, config: GapConfig) -> str:

@@ -16,6 +16,7 @@ from odometry.effects.interface.corrected import Added, delay_s
 from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.agreement import POSITIONS, Disagreement
 from odometry.gap.fit.evenness import Unevenness
 from odometry.gap.locate.region_words import noun_of
 from odometry.gap.prepare.simulate import run_of
@@ -138,6 +139,16 @@ def is_even(of: Unevenness, config: GapConfig) -> str:
     return (
         f"its strength differs by {100 * of.share:.0f} % from one stretch of the runs to the next: "
         "something else comes and goes"
+    )
+
+
+def is_one_to_all(of: Disagreement | None, config: GapConfig) -> str:
+    """Whether all that measures an effect shows the same strength of it."""
+    if of is None or of.difference <= config.disagreeing or of.sigmas <= config.surely_disagreeing:
+        return ""
+    return (
+        f"{of.stronger} show{'s' * (of.stronger != POSITIONS)} {of.factors[0]:.2f} times its "
+        f"strength and {of.weaker} {of.factors[1]:.2f} times: something else is seen by one of them"
     )
 
 
