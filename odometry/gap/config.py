@@ -134,7 +134,7 @@ class GapConfig(SmoothConfig):
     disagreeing, surely_disagreeing : float
         Difference between the strengths of a name that two measures show, as a share of it, above
         which it is no one strength; and the standard deviations that it must be. Right names
-        differ by DEV at most, poses that are smoothed in the place of a bent yaw by 0.8.
+        differ by 0.27 and by 2.6 of these at most, smoothed poses in place of a bent yaw by 0.8.
     base_probability : float
         Of a base that moves as far within its calibration by chance: less is a base that left it.
     brought_back : float

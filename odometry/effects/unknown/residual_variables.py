@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.effects.unknown.leaning import LEANING, leaning
 from odometry.models.inputs import Inputs
 
 HARMONICS = 2
@@ -13,7 +14,7 @@ SINCE_STOP = "time_since_stop"  # of a drive that stops
 REPEATED = "tread_speed_repeated"  # of which only a share may be added
 FURTHER = (  # no rivals of names
     *("tread_speed_lost", "tread_speed_gained", REPEATED),
-    *("turn_since_rest", "turn_since_reversal"),
+    *("turn_since_rest", "turn_since_reversal", *LEANING),
 )
 OF_TREADS = (  # variables (N, 2): of each tread its own
     *("tread_speed", "tread_acceleration", "other_tread_speed"),
@@ -220,6 +221,8 @@ RECORDED: Mapping[str, Callable[[Inputs], FloatArray | None]] = {
     "right_wheel_angle": lambda inputs: _wheel_angle(inputs.wheel_angles_rad, slice(1, 2)),
 }
 SIMULATED: Mapping[str, Callable[[FloatArray, Inputs], FloatArray | None]] = {
+    LEANING[0]: lambda twist, inputs: leaning(twist, inputs, 0),
+    LEANING[1]: lambda twist, inputs: leaning(twist, inputs, 1),
     "curvature": lambda twist, _: twist[:, 2] / _at_least(twist[:, 0], CREEPING_M_S),
     "lateral_acceleration": lambda twist, _: twist[:, 0] * twist[:, 2],
     "travel_since_reversal": lambda twist, inputs: (

@@ -127,6 +127,8 @@ NAMES = {
     "tread_speed_lost": "speed that each tread lost in the last 0.6 s",
     "tread_speed_gained": "speed that each tread gained in the last 0.6 s",
     "tread_speed_repeated": "how often the record repeats a tread speed while it changes",
+    "leaning_forward": "how fast a mast on the robot leans forward",
+    "leaning_left": "how fast a mast on the robot leans to the left",
     "turn_since_rest": "turn since the robot last did not turn",
     "turn_since_reversal": "turn since the robot last turned to the other side",
     "tread_travel_since_reversal": "travel of each tread since it last reversed",

@@ -13,6 +13,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.leaning import LEANING
 from odometry.effects.unknown.residual import TREADS, Residual
 from odometry.effects.unknown.residual_variables import FURTHER, OF_TREADS, REPEATED, variable_of
 from odometry.gap.config import GapConfig
@@ -116,7 +117,7 @@ class Further(Standing):
 def further_candidates(
     scenes: Sequence[DenseWindows], base: Base, config: GapConfig
 ) -> tuple[Residual, ...]:
-    """Functions of what treads lost or gained in speed, repeat, or turned since; and fine maps."""
+    """Of speed that treads lost or gained or repeat, of turns since, of leaning; and fine maps."""
     found: list[Residual] = []
     twists = [base.model.twist(base.values, scene.inputs) for scene in scenes]
     for name in FURTHER:
@@ -128,7 +129,10 @@ def further_candidates(
 
 
 def _of_knots(name: str, knots: tuple[float, ...]) -> list[Residual]:
-    """A share of the turn, or what is added to each tread, to both or to one."""
+    """A share of the turn, what leans, or what is added to each tread, to both or to one."""
+    if name in LEANING:  # nothing at zero
+        along = ("v_x", "v_y")[LEANING.index(name)]
+        return [Residual(name, ((along, 0), (along, len(knots) - 1)), "", knots)]
     if name not in OF_TREADS:
         return [Residual(name, every(("omega",), len(knots)), "omega", knots)]
     found = []

@@ -12,6 +12,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.interface.base_model import Base
 from odometry.effects.measurement.reference_fault import all_round
 from odometry.effects.unknown.history import BOTH, LAGS_S, History
+from odometry.effects.unknown.leaning import LEANING
 from odometry.effects.unknown.residual import (
     ANGLES,
     COMPONENTS,
@@ -152,11 +153,11 @@ def knots_of(values: FloatArray, name: str, config: GapConfig) -> tuple[float, .
     """Even in the share of samples between them; none where the variable hardly varies.
 
     Those of a tread's motion are even about zero, where what drives do changes its sign. What a
-    record says of repeated speeds is added by a share of it, one of each sign.
+    record says of repeated speeds, and what leans, is added by a share of it, one of each sign.
     """
     if name in STATED:
         return STATED[name]
-    if name == REPEATED:
+    if name in (REPEATED, *LEANING):
         largest = float(np.abs(values).max(initial=0.0))
         places = np.array([-largest, 0.0, largest])
     elif name in OF_TREADS:

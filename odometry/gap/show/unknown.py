@@ -23,7 +23,7 @@ DRIVES: Mapping[str, str] = {  # in which a variable changes and the others hard
     **dict.fromkeys(("curvature", "speed_difference", "turn_before"), IN_CIRCLES),
     **dict.fromkeys(("lateral_acceleration", "lateral_acceleration_before"), IN_CIRCLES),
     **dict.fromkeys(("time", "mean_speed_before", "mean_turning_before"), AFTER_REST),
-    **dict.fromkeys(("roll", "pitch"), LEVEL),
+    **dict.fromkeys(("roll", "pitch", "leaning_forward", "leaning_left"), LEVEL),
     **dict.fromkeys(("wheel_angle", "left_wheel_angle", "right_wheel_angle"), SLOWLY),
     "heading": "straight lines on several headings",
     "place": "the same course at another place",
