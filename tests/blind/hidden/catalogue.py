@@ -1,5 +1,6 @@
 """All kinds of hidden effects, by group."""
 
+from tests.blind.hidden.carried import CARRIED
 from tests.blind.hidden.drives import DRIVES
 from tests.blind.hidden.everyday import EVERYDAY
 from tests.blind.hidden.fieldwork import FIELDWORK
@@ -30,6 +31,7 @@ GROUPS = {
     "unusual": UNUSUAL,
     "everyday": EVERYDAY,
     "fieldwork": FIELDWORK,
+    "carried": CARRIED,
     "mixed": MIXED,
     "nothing": {
         "nothing": Kind(nothing, ()),
