@@ -45,7 +45,8 @@ class Further(Standing):
         """
         is_closed = found.steps or found.base_closes
         share = self._held_out_left(found)[1] if is_closed else 0.0
-        if found.has_name or not (found.steps or found.unexplained) or share >= 1.0:
+        is_there = found.steps or found.unexplained or self.is_above
+        if found.has_name or not is_there or share >= 1.0:
             return found
         options = [
             one

@@ -115,3 +115,15 @@ def test_what_closes_less_than_what_there_is_does_not_take_its_place(
     monkeypatch.setattr(Further, "_tried_in_turn", lambda *_: [])
     monkeypatch.setattr(Further, "_held_out_left", lambda _, one: (0, share if one.steps else 0.6))
     assert bool(search.further(there).steps) is is_taken
+
+
+@pytest.mark.usefixtures("few_stretches")
+@pytest.mark.parametrize("is_above", [True, False])
+def test_a_gap_that_is_surely_there_is_searched_whatever_chi_squared_says(
+    known, scene, other, is_above
+):
+    """Many noisy poses hide in chi-squared a degree of freedom what moves the ends of windows."""
+    search, _ = searched(known, scene, other)
+    search.__dict__["is_above"] = is_above
+    nothing = Explanation(search.start, (), ())
+    assert bool(search.further(nothing).steps) == is_above
