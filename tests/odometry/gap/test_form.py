@@ -14,6 +14,7 @@ from odometry.effects.motion.curvature import Curvature
 from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
+from odometry.gap.fit.agreement import POSITIONS, YAW, Disagreement
 from odometry.gap.fit.contest import Judged
 from odometry.gap.fit.evenness import Unevenness
 from odometry.gap.name.explanation import Explanation
@@ -28,6 +29,24 @@ def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, stands):
     monkeypatch.setattr("odometry.gap.name.form.unevenness", lambda *_: Unevenness(0.0, 1.0))
     effect, refused = SlopeByContact(), []
     fitted = SimpleNamespace(effects=(Added(effect, np.array([mu, 0.2, 0.3, 0.0, 0.03])),))
+    found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
+    search = SimpleNamespace(
+        fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
+        config=GapConfig(),
+        refuse=lambda *reason: refused.append(reason),
+    )
+    assert bool(of_their_form(search, found, ()).steps) == stands
+    assert bool(refused) != stands
+
+
+@pytest.mark.parametrize(("factors", "stands"), [((1.2, 0.4), False), ((1.05, 0.95), True)])
+def test_a_name_of_which_yaw_and_positions_disagree_does_not_stand(monkeypatch, factors, stands):
+    of = Disagreement(YAW, POSITIONS, factors, 9.0)
+    monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", lambda *_: None)
+    monkeypatch.setattr("odometry.gap.name.form.unevenness", lambda *_: Unevenness(0.0, 1.0))
+    monkeypatch.setattr("odometry.gap.name.form.disagreement", lambda *_: of)
+    effect, refused = SlipBySpeed(), []
+    fitted = SimpleNamespace(effects=(Added(effect, np.array([0.1])),))
     found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
     search = SimpleNamespace(
         fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
