@@ -24,13 +24,17 @@ from odometry.gap.prepare.statistic import squared_errors
 from odometry.windows.dense import DenseWindows
 
 SPACING_S = 1.0  # of the moments that are searched
+BEFORE = 0.05  # of the way of a run: what begins earlier cannot be told from what is always there
 TIED = 1e-9  # share: losses nearer than this are equal, so that rounding does not choose a moment
 InCourse = CommandsInCourse | MotionInCourse
 
 
 def observed_s(scene: DenseWindows) -> tuple[float, float]:
-    """When the first window ends and the last one begins."""
-    return float(scene.pose_s[scene.windows[:, -1]].min()), float(scene.start_s.max())
+    """When the first window has ended and enough way is driven, and when the last one begins."""
+    begin_m, end_m = scene.travel_m[[0, -1]]
+    driven_s = np.interp(begin_m + BEFORE * (end_m - begin_m), scene.travel_m, scene.time_s)
+    ended_s = scene.pose_s[scene.windows[:, -1]].min()
+    return float(max(ended_s, driven_s)), float(scene.start_s.max())
 
 
 def with_own_moments(

@@ -110,3 +110,14 @@ def test_what_is_always_there_is_judged_on_all(known, scenes):
     effects, judged = with_own_moments(known.base, [scale], scenes[1:], scenes[:1], known)
     assert effects == (scale,)
     assert judged[0] is scenes[1]
+
+
+def test_a_moment_before_which_hardly_any_way_was_driven_is_none(scenes):
+    """A loss that begins as the robot does is there all along."""
+    scene = scenes[0]
+    of_moments = FromAMoment((observed_s(scene),))
+    share = (scene.travel_m - scene.travel_m[0]) / np.ptp(scene.travel_m)
+    early_s, later_s = (np.interp(of, share, scene.time_s) for of in (0.04, 0.06))
+    assert early_s > scene.pose_s[scene.windows[:, -1]].min()
+    assert not of_moments.is_meant(np.array([early_s]))
+    assert of_moments.is_meant(np.array([later_s]))
