@@ -22,39 +22,34 @@ from odometry.gap.name.form import of_their_form
 from odometry.gap.name.unnamed import in_bursts
 
 
-@pytest.mark.parametrize(("mu", "stands"), [(0.6, True), (2.0, False)])
-def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, stands):
+def stands(monkeypatch, effect, values):
+    """Whether a name of even strength that no function beats stands; a refusal has a reason."""
+    monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", lambda *_: None)
+    monkeypatch.setattr("odometry.gap.name.form.unevenness", lambda *_: Unevenness(0.0, 1.0))
+    refused = []
+    fitted = SimpleNamespace(effects=(Added(effect, np.array(values)),))
+    found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
+    search = SimpleNamespace(
+        fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
+        config=GapConfig(),
+        refuse=lambda *reason: refused.append(reason),
+    )
+    is_named = bool(of_their_form(search, found, ()).steps)
+    assert bool(refused) != is_named
+    return is_named
+
+
+@pytest.mark.parametrize(("mu", "expected"), [(0.6, True), (2.0, False)])
+def test_what_other_effects_have_bent_is_asked_again(monkeypatch, mu, expected):
     """Contacts were a robot when they were named, and are none beside what was added since."""
-    monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", lambda *_: None)
-    monkeypatch.setattr("odometry.gap.name.form.unevenness", lambda *_: Unevenness(0.0, 1.0))
-    effect, refused = SlopeByContact(), []
-    fitted = SimpleNamespace(effects=(Added(effect, np.array([mu, 0.2, 0.3, 0.0, 0.03])),))
-    found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
-    search = SimpleNamespace(
-        fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
-        config=GapConfig(),
-        refuse=lambda *reason: refused.append(reason),
-    )
-    assert bool(of_their_form(search, found, ()).steps) == stands
-    assert bool(refused) != stands
+    assert stands(monkeypatch, SlopeByContact(), [mu, 0.2, 0.3, 0.0, 0.03]) == expected
 
 
-@pytest.mark.parametrize(("factors", "stands"), [((1.2, 0.4), False), ((1.05, 0.95), True)])
-def test_a_name_of_which_yaw_and_positions_disagree_does_not_stand(monkeypatch, factors, stands):
+@pytest.mark.parametrize(("factors", "expected"), [((1.2, 0.4), False), ((1.05, 0.95), True)])
+def test_a_name_of_which_yaw_and_positions_disagree_does_not_stand(monkeypatch, factors, expected):
     of = Disagreement(YAW, POSITIONS, factors, 9.0)
-    monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", lambda *_: None)
-    monkeypatch.setattr("odometry.gap.name.form.unevenness", lambda *_: Unevenness(0.0, 1.0))
     monkeypatch.setattr("odometry.gap.name.form.disagreement", lambda *_: of)
-    effect, refused = SlipBySpeed(), []
-    fitted = SimpleNamespace(effects=(Added(effect, np.array([0.1])),))
-    found = Explanation(None, (Judged(effect, fitted, 90.0, 80.0, 70.0, 0.1),), ())
-    search = SimpleNamespace(
-        fitter=SimpleNamespace(measured=SimpleNamespace(scenes=())),
-        config=GapConfig(),
-        refuse=lambda *reason: refused.append(reason),
-    )
-    assert bool(of_their_form(search, found, ()).steps) == stands
-    assert bool(refused) != stands
+    assert stands(monkeypatch, SlipBySpeed(), [0.1]) == expected
 
 
 def test_a_name_that_passed_by_what_another_did_is_tested_again(monkeypatch):
