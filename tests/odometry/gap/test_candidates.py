@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from odometry.effects.commands.wheel_scale import WheelScale
@@ -21,12 +22,16 @@ def scenes(make_scene):
     return [make_scene(70, same), make_scene(71, same, duration_s=60.0)]
 
 
-def test_a_moment_lies_after_one_window_and_before_another(scenes, known):
-    """Of each run."""
-    courses = [e for e in quick_effects(scenes, known) if e.key == LOSS]
-    spans_s = [scene.pose_s[scene.windows[:, [0, -1]]] for scene in scenes]
-    expected = tuple((float(of[:, 1].min()), float(of[:, 0].max())) for of in spans_s)
-    assert [loss.in_time.observed_s for loss in courses] == [expected]
+def test_a_moment_lies_after_some_way_and_before_a_window(scenes, known):
+    """Of each run: a twentieth of the way, and a whole window."""
+    (loss,) = (e for e in quick_effects(scenes, known) if e.key == LOSS)
+    for scene, (first_s, last_s) in zip(scenes, loss.in_time.observed_s, strict=True):
+        way_m = np.interp(
+            [scene.time_s[0], first_s, scene.time_s[-1]], scene.time_s, scene.travel_m
+        )
+        assert (way_m[1] - way_m[0]) / (way_m[2] - way_m[0]) == pytest.approx(0.05)
+        assert first_s > scene.pose_s[scene.windows[:, -1]].min()
+        assert last_s == scene.start_s.max()
 
 
 def test_forms_of_contact_forces_are_apart(scenes, known):
