@@ -110,6 +110,8 @@ SPOKEN: Mapping[str, Signed | Plain] = {
     "time_since_stop": Plain("time since the last stop", "s", 1.0, "after", "before"),
     "left_wheel_angle": Plain("angle of the left wheels", "degrees", DEGREES),
     "right_wheel_angle": Plain("angle of the right wheels", "degrees", DEGREES),
+    "leaning_forward": Plain("how fast a mast of 1 m on the robot leans forward", "m/s"),
+    "leaning_left": Plain("how fast a mast of 1 m on the robot leans to the left", "m/s"),
     "speed_before": Plain("previous speed", "m/s"),
     "speed_history": Plain("speeds recorded shortly before and after", "s"),
     "speed_change": Signed(
@@ -127,8 +129,6 @@ NAMES = {
     "tread_speed_lost": "speed that each tread lost in the last 0.6 s",
     "tread_speed_gained": "speed that each tread gained in the last 0.6 s",
     "tread_speed_repeated": "how often the record repeats a tread speed while it changes",
-    "leaning_forward": "how fast a mast on the robot leans forward",
-    "leaning_left": "how fast a mast on the robot leans to the left",
     "turn_since_rest": "turn since the robot last did not turn",
     "turn_since_reversal": "turn since the robot last turned to the other side",
     "tread_travel_since_reversal": "travel of each tread since it last reversed",

@@ -28,6 +28,8 @@ DRIVES: Mapping[str, str] = {  # in which a variable changes and the others hard
     "heading": "straight lines on several headings",
     "place": "the same course at another place",
 }
+ON_A_MAST = "positions of an antenna on a mast that are not corrected for roll and pitch"
+SUCH_AS: Mapping[str, str] = dict.fromkeys(("leaning_forward", "leaning_left"), ON_A_MAST)
 
 
 def where_to_look(residuals: Sequence[Residual]) -> list[str]:
@@ -35,6 +37,7 @@ def where_to_look(residuals: Sequence[Residual]) -> list[str]:
     return list(
         dict.fromkeys(
             f"look for a cause that depends on {noun_of(one.variable)}"
+            + (f", such as {SUCH_AS[one.variable]}" if one.variable in SUCH_AS else "")
             if one.remedy == Residual.remedy
             else one.remedy
             for one in residuals

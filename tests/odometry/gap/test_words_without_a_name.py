@@ -118,5 +118,13 @@ def test_several_variables_are_said_to_go_together_with_drives_that_separate_the
     assert how_to_separate([residuals[0], residuals[0]]) == ""
 
 
+def test_a_mast_that_leans_has_a_likely_cause():
+    (clause,) = where_to_look([Residual("leaning_forward")])
+    assert clause.endswith(
+        "a mast of 1 m on the robot leans forward, such as positions of an antenna on a mast that "
+        "are not corrected for roll and pitch"
+    )
+
+
 def test_every_variable_has_a_drive_that_separates_it():
     assert set(DRIVES) == {*VARIABLES, *FURTHER, PLACE, HISTORY}
