@@ -17,8 +17,8 @@ SHARES = (
     *("most_beaten", "least_better", "least_beside", "main_part", "one_sided", "no_farther"),
     *("much_farther", "largest_growth", "base_probability", "least_odds", "sure_odds", "still_off"),
 )
-FEWEST = {"folds": 2, "held_back": 2, "most_poses": 2, "most_windows": 20}
-FEWEST |= {"trimmed": 1, "most_effects": 1}
+AT_LEAST_TWO = dict.fromkeys(("folds", "held_back", "most_poses"), 2)
+FEWEST = AT_LEAST_TWO | {"trimmed": 1, "most_effects": 1, "most_windows": 20}
 
 
 @dataclass(frozen=True)

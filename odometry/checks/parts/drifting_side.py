@@ -42,15 +42,15 @@ class DriftingSide:
     at_s : (KNOTS,)
         Stamps.
     reads : (KNOTS,)
-        What it reads there, times its motion, if the other tread reads its own.
-    left : float
-        Share of what constant scales leave.
+        What it reads there, times its motion, if the other tread is right.
+    turns : ScaleCourses
+        By which it was found.
     """
 
     side: int
     at_s: FloatArray
     reads: FloatArray
-    left: float
+    turns: ScaleCourses
 
     def undone(self, run: Run) -> Run:
         """The run with the scale of the other tread all along."""
@@ -64,14 +64,14 @@ def side_drifts(evidence: Evidence) -> Iterator[Finding]:
     found = drifting_side(evidence)
     if found is None:
         return
-    name, began_s = TREADS[found.side], evidence.run.began_s
+    name, other, began_s = TREADS[found.side], TREADS[1 - found.side], evidence.run.began_s
     reads = ", ".join(f"{of:.2g}" for of in found.reads)
     at_s = ", ".join(f"{of - began_s:.0f}" for of in found.at_s)
     yield Finding(
         "tread_scale_drifts",
         Level.WARNING,
-        f"by the turns {name} reads {reads} times the motion of its tread at {at_s} s, if the "
-        "other tread reads its own",
+        f"the turns say that {name} reads {reads} times the motion of its tread at {at_s} s, if "
+        f"{other} is right",
         f"The scale of {name} changes while recording (an encoder that loses counts, a wheel that "
         "wears, a tyre that loses air, a setting); or that tread alone slips more or less",
         f"Correct {name}, or cut with --from and --to",
@@ -94,7 +94,7 @@ def drifting_side(evidence: Evidence) -> DriftingSide | None:
         return None
     way = ScaleCourses.of(evidence.motion, evidence.forward_m, clock, 1)
     fits = [turns] if way is None or not way.is_known else [turns, way]
-    shares = np.sqrt(np.prod([of.shares for of in fits], axis=0)) if len(fits) > 1 else turns.shares
+    shares = np.prod([of.shares for of in fits], axis=0) ** (1 / len(fits))
     side = int(np.argmin(shares[:2]))
     courses = [of.course(side) for of in fits]
     if min(of.min() for of in courses) <= 0 or not all(of.moves_all_along(side) for of in fits):
@@ -105,7 +105,7 @@ def drifting_side(evidence: Evidence) -> DriftingSide | None:
         return None
     if courses[0].max() < CHANGED * courses[0].min() or not _alike(courses):
         return None
-    return DriftingSide(side, clock.knots_s, 1 / courses[0], float(shares[side]))
+    return DriftingSide(side, clock.knots_s, 1 / courses[0], turns)
 
 
 def _is_clear(shares: FloatArray, side: int, limits: tuple[float, float]) -> bool:

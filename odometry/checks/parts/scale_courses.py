@@ -94,6 +94,11 @@ class ScaleCourses:
         """Whether treads of constant scales explain most of it."""
         return self.unexplained < WAY_KNOWN
 
+    def own_and_other_m(self, side: int) -> tuple[FloatArray, FloatArray]:
+        """Ways (K,) of one side and of the other, above 0 where they add to the target."""
+        left_m, right_m = self.sign * self.left_m, self.right_m
+        return (right_m, left_m) if side else (left_m, right_m)
+
     def left_by_course(self, side: int) -> float:
         """The squares that a course of one side leaves."""
         return self._courses[side][0]
@@ -102,7 +107,7 @@ class ScaleCourses:
         """The scale of one side at the knots (KNOTS,), in that of the other one; 0 without one."""
         found = self._courses[side][1]
         of_other = float(found[KNOTS])
-        return found[:KNOTS] / of_other * self.sign if of_other else np.zeros(KNOTS)
+        return found[:KNOTS] / of_other if of_other else np.zeros(KNOTS)
 
     @cached_property
     def _constant(self) -> float:
@@ -111,7 +116,7 @@ class ScaleCourses:
     @cached_property
     def _courses(self) -> tuple[tuple[float, FloatArray], tuple[float, FloatArray]]:
         """With a course of the left, and of the right tread: squares, coefficients (KNOTS + 2,)."""
-        left_m, right_m = self.left_m, self.right_m
+        left_m, right_m = self.own_and_other_m(0)
         return (
             self.fit(*(self.hats * left_m), right_m, self.lasts_s),
             self.fit(*(self.hats * right_m), left_m, self.lasts_s),

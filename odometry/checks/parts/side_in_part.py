@@ -9,12 +9,11 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding
 from odometry.checks.findings.undo import TREADS
-from odometry.checks.parts.drifting_side import drifting_side
+from odometry.checks.parts.drifting_side import DriftingSide, drifting_side
 from odometry.checks.parts.edges import Columns, exact_span
-from odometry.checks.parts.scale_courses import ScaleCourses, WayClock
+from odometry.checks.parts.scale_courses import ScaleCourses
 from odometry.checks.parts.scaled_side import change_of_scale, finding_of_scale
 from odometry.checks.parts.span import Span, best_rows
-from odometry.checks.turns.measured_turns import measured_turns
 
 EDGES = 31  # places of an end that are tried, of equal counts of windows
 LEAST_WINDOWS = 10  # inside, and outside
@@ -29,12 +28,10 @@ def side_in_part(evidence: Evidence) -> Iterator[Finding]:
     drift = drifting_side(evidence)
     if drift is None:
         return
-    measured = next(measured_turns(evidence))
-    turns = ScaleCourses.of(measured.motion, measured.target, WayClock.of(evidence), -1)
-    found = None if turns is None else _in_rows(turns, drift.side)
-    if turns is None or found is None:
+    found = _in_rows(drift.turns, drift.side)
+    if found is None:
         return
-    span, inside, elsewhere = _exact(evidence, turns, drift.side, found), *found.levels
+    span, inside, elsewhere = _exact(evidence, drift, found), *found.levels
     if abs(np.log(inside / found.other)) < abs(np.log(elsewhere / found.other)):
         span, inside, elsewhere = span.elsewhere, elsewhere, inside
     reads = elsewhere / inside
@@ -70,28 +67,23 @@ def _in_rows(turns: ScaleCourses, side: int) -> _InRows | None:
 
 
 def _tried(turns: ScaleCourses, side: int, rows: tuple[int, int]) -> _InRows:
-    own_m, other_m, sign = turns.left_m, turns.right_m, -1
-    if side == 1:
-        own_m, other_m, sign = other_m, own_m, 1
+    own_m, other_m = turns.own_and_other_m(side)
     inside_m = np.zeros_like(own_m)
     inside_m[slice(*rows)] = own_m[slice(*rows)]
     squares, found = turns.fit(inside_m, own_m - inside_m, other_m, turns.lasts_s)
-    inside, elsewhere, other = (sign * found[:3] * [1, 1, -1]).tolist()
+    inside, elsewhere, other, _ = found.tolist()
     return _InRows(rows, (inside, elsewhere), other, squares)
 
 
-def _exact(evidence: Evidence, turns: ScaleCourses, side: int, found: _InRows) -> Span:
+def _exact(evidence: Evidence, drift: DriftingSide, found: _InRows) -> Span:
     """Its span, with ends at the rows at which speeds change."""
-    recorded = evidence.run.odometry.stack(*TREADS).T
+    recorded, turns = evidence.run.odometry.stack(*TREADS).T, drift.turns
     inside, elsewhere = found.levels
     undone = recorded.copy()
-    undone[side] *= inside / elsewhere
-    own_m, other_m, sign = turns.left_m, -turns.right_m, -1
-    if side == 1:
-        own_m, other_m, sign = turns.right_m, -turns.left_m, 1
+    undone[drift.side] *= inside / elsewhere
+    own_m, other_m = turns.own_and_other_m(drift.side)
     left = [
-        (turns.target - sign * (level * own_m + found.other * other_m)) ** 2
-        for level in (elsewhere, inside)
+        (turns.target - level * own_m - found.other * other_m) ** 2 for level in (elsewhere, inside)
     ]
     gains = left[0] - left[1]
     columns = Columns(evidence.stamps_s, recorded, undone, elsewhere / inside, np.inf)

@@ -43,17 +43,17 @@ class _Turns:
         of, reach_s = measured.motion, SMOOTHED_S[-1] / 2
         begin_s, end_s = evidence.stamps_s[[0, -1]]
         known = np.isfinite(measured.target)
-        known &= (of.start_s > begin_s + reach_s) & (of.end_s < end_s - reach_s)
-        if known.sum() < LEAST_WINDOWS:
+        within = known & (of.start_s > begin_s + reach_s) & (of.end_s < end_s - reach_s)
+        if within.sum() < LEAST_WINDOWS:
             return None
-        of, grid_s = of.rows(np.flatnonzero(known)), np.arange(begin_s, end_s, GRID_S)
-        turned = np.append(0.0, np.cumsum(measured.target[np.isfinite(measured.target)]))
-        ends = measured.motion.rows(np.flatnonzero(np.isfinite(measured.target))).end_s
-        heading = np.interp(grid_s, np.append(begin_s, ends), turned)
+        grid_s = np.arange(begin_s, end_s, GRID_S)
+        turned_rad = np.append(0.0, np.cumsum(measured.target[known]))
+        heading = np.interp(grid_s, np.append(begin_s, of.end_s[known]), turned_rad)
+        of = of.rows(np.flatnonzero(within))
         difference_m = evidence.integrals.right_m(grid_s) - evidence.integrals.left_m(grid_s)
         return cls(
             np.stack([of.left_m, of.right_m, of.lasts_s]),
-            measured.target[known],
+            measured.target[within],
             of.start_s,
             of.end_s,
             grid_s,
@@ -91,8 +91,8 @@ def smoothed_treads(evidence: Evidence) -> Iterator[Finding]:
     yield Finding(
         "smoothed_treads",
         Level.WARNING,
-        f"turns that are averaged over {over_s:g} s fit the treads better: what these leave is "
-        f"{100 * share:.0f} % of what they leave of the measured turns, which are sharper",
+        f"the measured turns are sharper than those of the treads; averaged over {over_s:g} s they "
+        f"fit the treads better ({100 * share:.0f} % of the squared differences are left)",
         f"Tread speeds are smoothed over some {over_s:g} s (a moving mean, a filter of the driver "
         "that looks ahead): they cut short what the robot did",
         "Log the speeds before they are smoothed",

@@ -148,7 +148,7 @@ def is_one_to_all(of: Disagreement | None, config: GapConfig) -> str:
         return ""
     return (
         f"{of.stronger} show{'s' * (of.stronger != POSITIONS)} {of.factors[0]:.2f} times its "
-        f"strength and {of.weaker} {of.factors[1]:.2f} times: something else is seen by one of them"
+        f"strength and {of.weaker} {of.factors[1]:.2f} times: one of them shows something else"
     )
 
 
