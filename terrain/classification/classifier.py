@@ -19,9 +19,10 @@ from terrain.classification.photographs.patches import LabelledPatches
 from terrain.classification.photographs.trained_on import (
     TrainedOn,
     as_images,
-    check_labels,
     holds_images,
+    labels_and_groups,
 )
+from terrain.classification.photographs.white_balance import with_white_balances
 from terrain.classification.presets import PRESETS
 
 
@@ -192,12 +193,14 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         strange: list[ByteImage] = []
         if holds_images(X):
             X = as_images(X)
-            labels, photos = _labels_and_groups(len(X), y, groups)
+            labels, photos = labels_and_groups(len(X), y, groups)
             strange = self._strange_patches(X, photos)
-            images = [*X, *altered.images]
+            made_by = self._made_by([*X, *altered.images], labels)
+            if self.colour_ and not PRESETS[self.preset].as_published:
+                altered = with_white_balances(altered, X, labels, photos)
             features = shared_feature_matrix(
-                [*images, *strange],
-                self._made_by(images, labels),
+                [*X, *altered.images, *strange],
+                made_by,
                 processes=processes,
                 scheduler=scheduler,
                 show_progress=progress,
@@ -207,7 +210,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
             self._features, self.colour_ = None, False
             features, labels = validate_data(self, X, y, ensure_min_samples=2)
             check_classification_targets(labels)
-            labels, photos = _labels_and_groups(len(features), labels, groups)
+            labels, photos = labels_and_groups(len(features), labels, groups)
         self.classes_, codes = np.unique(labels, return_inverse=True)
         self.trained_on_ = trained_on
         samples = Samples(features[: len(labels)], codes, photos)
@@ -242,13 +245,3 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         tags = super().__sklearn_tags__()
         tags.input_tags.three_d_array = True
         return tags
-
-
-def _labels_and_groups(
-    count: int, y: Sequence[str] | AnyArray, groups: Sequence[str] | AnyArray | None
-) -> tuple[AnyArray, AnyArray]:
-    """Labels and groups (n,), a group for each patch where none are given; PatchError if bad."""
-    labels = np.asarray(y)
-    of = np.arange(count) if groups is None else np.asarray(groups)
-    check_labels(count, labels, of)
-    return labels, of

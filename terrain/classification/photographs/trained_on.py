@@ -115,8 +115,23 @@ def common_size(images: Sequence[ByteImage]) -> int:
     return int(images[0].shape[0])
 
 
-def check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
-    """Raise PatchError unless there are two classes of two groups each, with allowed names."""
+def labels_and_groups(
+    n_images: int, y: Sequence[str] | AnyArray, groups: Sequence[str] | AnyArray | None
+) -> tuple[AnyArray, AnyArray]:
+    """Labels and groups (n,), a group for each image where none are given.
+
+    Raises
+    ------
+    PatchError
+        Unless there are two classes of two groups each, with allowed names.
+    """
+    labels = np.asarray(y)
+    of = np.arange(n_images) if groups is None else np.asarray(groups)
+    _check_labels(n_images, labels, of)
+    return labels, of
+
+
+def _check_labels(n_images: int, labels: AnyArray, groups: AnyArray) -> None:
     if not n_images == len(labels) == len(groups):
         raise PatchError(f"{n_images} images, {len(labels)} labels and {len(groups)} groups")
     check_names(map(str, np.unique(labels).tolist()))
