@@ -42,7 +42,8 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour depends
         on camera, white balance and light, and where each class was photographed by another
         camera, the classifier recognises the camera. Use it where training and use share one
-        camera. It stays off if the training patches are grey; see `colour_`.
+        camera; it learns from copies in another white balance as well. It stays off if the
+        training patches are grey; see `colour_`.
     metres_per_pixel : float, optional
         The scale of the patches on the terrain; kept for programs that cut patches.
     rejected_share : float
