@@ -6,7 +6,7 @@ from math import comb
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, median
 from odometry.checks.copies.resampling import Sampled, low_pass, ways
 from odometry.checks.statistics.least_squares import least_squares
 
@@ -164,7 +164,7 @@ class _Trial:
 
 
 def _period_s(stamps_s: FloatArray) -> float:
-    return float(np.median(np.diff(stamps_s)))
+    return median(np.diff(stamps_s))
 
 
 def noise_of(mean_square: float) -> float:
@@ -222,8 +222,10 @@ def _shift(trial: _Trial, source: FloatArray, period_s: float) -> tuple[float, f
     changes = np.diff(trial.values)
     of_source = np.diff(trial.sampled(trial.at_s, 0.0, trial.source_s, source))
     reach = max(round(MOST_DELAY_S / period_s), 1)
-    size = float(np.sqrt(np.sum(changes**2) * np.sum(of_source**2)))
-    products = np.abs(np.correlate(np.pad(changes, reach), of_source))
+    padded = np.zeros(len(changes) + 2 * reach)
+    padded[reach:-reach] = changes
+    size = float(np.sqrt((changes @ changes) * (of_source @ of_source)))
+    products = np.abs(np.correlate(padded, of_source))
     best = int(np.argmax(products))
     return float(products[best]) / max(size, 1e-300), (best - reach) * period_s
 

@@ -132,13 +132,18 @@ class Evidence(CleanedRecording):
 
     def turn_rad(self, motion: Motion) -> FloatArray:
         """Turn (K,) in rad, by the gyroscope where there is one in rad/s or degrees per second."""
-        if self.yaw_rate is None:
-            return motion.turn_rad
-        fastest = np.nanquantile(np.abs(self.yaw_rate[1]), 0.99)
-        if fastest > np.degrees(DEGREES_RAD_S):
-            return motion.turn_rad  # neither: counts
+        fastest = self._fastest_yaw_rate
+        if fastest is None or fastest > np.degrees(DEGREES_RAD_S):
+            return motion.turn_rad  # no gyroscope, or neither: counts
         turn = motion.gyroscope_rad
         return np.asarray(np.radians(turn)) if fastest > DEGREES_RAD_S else turn
+
+    @cached_property
+    def _fastest_yaw_rate(self) -> float | None:
+        """Ordinary fastest yaw rate in the unit of the gyroscope: 99 in 100 are slower."""
+        if self.yaw_rate is None:
+            return None
+        return float(np.nanquantile(np.abs(self.yaw_rate[1]), 0.99))
 
     @cached_property
     def sideways_m(self) -> FloatArray:

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray, median
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding, Level
@@ -127,8 +127,8 @@ def _parts(evidence: Evidence, spans: HeadingSpans) -> Parts:
 
 def _independent(spans: HeadingSpans, rows: IntArray) -> float:
     """How many of the spans do not overlap."""
-    step_s = float(np.median(np.diff(spans.start_s)))
-    return min(len(rows) * step_s, PART_S) / float(np.median(spans.lasts_s[rows]))
+    step_s = median(np.diff(spans.start_s))
+    return min(len(rows) * step_s, PART_S) / median(spans.lasts_s[rows])
 
 
 def _noise(spans: HeadingSpans, rates: FloatArray, parts: Parts) -> float:

@@ -6,9 +6,8 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray
 
 Signal = Callable[[FloatArray], FloatArray]
 Rate = Callable[[FloatArray, float], FloatArray]  # of stamps, over a width [s] around each
@@ -16,7 +15,7 @@ GRID_S = 0.05
 LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
 LEAST_SIZE = 1e-9  # of the product of both; smaller ones stand still
-TOGETHER = 2**15  # numbers of shifted signals; what is made of them stays in the cache
+LEAST_SHARE = 1e-12  # of the squares, that are left of the mean: less is their rounding
 PIECES = 8
 LEAST_PIECE_S = 8.0
 TOGETHER_S, CUTOFF = 0.15, 4.0  # seconds, or standard deviations, from the line through the pieces
@@ -102,8 +101,7 @@ def _peak(
     known = np.isfinite(reference)
     if known.sum() < LEAST_PIECE_S / GRID_S / 2:
         return None
-    shifted = sliding_window_view(other, len(at_s))[2 * reach :: -1]
-    correlations = _correlations(reference, shifted)
+    correlations = _correlations(reference, other)[::-1]
     best = int(np.nanargmax(correlations)) if np.isfinite(correlations).any() else 0
     if not 0 < best < 2 * reach or correlations[best] < LEAST_CORRELATION:
         return None
@@ -127,33 +125,33 @@ def _rate(heading: Signal, at_s: FloatArray, width_s: float) -> FloatArray:
     return (heading(at_s + width_s / 2) - heading(at_s - width_s / 2)) / width_s
 
 
-def _correlations(one: FloatArray, others: FloatArray) -> FloatArray:
-    """Correlation (m,) of one signal (n,) with each of others (m, n), where both are known."""
-    correlations = np.full(len(others), np.nan)
-    count, of_one = max(TOGETHER // len(one), 1), np.isfinite(one)
-    for begin in range(0, len(others), count):
-        some = others[begin : begin + count]
-        known = np.isfinite(some)
-        if of_one.all() and known.all():
-            counts = np.full(len(some), len(one))
-            a, b = one - one.mean(), some - some.mean(axis=1)[:, None]
-            squares, products = np.sum(a**2, keepdims=True), b @ a
-        else:
-            known &= of_one
-            counts = known.sum(axis=1)
-            a, b = (_centred(of, known, counts) for of in (one, some))
-            squares, products = np.sum(a**2, axis=1), np.sum(a * b, axis=1)
-        sizes = np.sqrt(squares * np.einsum("ij,ij->i", b, b))
-        clear = (sizes > LEAST_SIZE) & (counts >= LEAST_PIECE_S / GRID_S / 2)
-        correlations[begin : begin + count][clear] = products[clear] / sizes[clear]
-    return correlations
+def _correlations(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Correlation (m,) of a signal (n,) with each n neighbours of another (n + m - 1,).
+
+    Of what both know; NaN where that is too little, or where one of them stands still.
+    """
+    (of_one, known), (of_other, known_other) = _from_mean(one), _from_mean(other)
+    counts = np.maximum(_sums(known_other, known), 1)
+    a, b = _sums(known_other, of_one), _sums(of_other, known)
+    of_a, of_b = _sums(known_other, of_one**2), _sums(of_other**2, known)
+    left_a, left_b = of_a - a**2 / counts, of_b - b**2 / counts
+    sizes = np.sqrt(np.maximum(left_a * left_b, 0.0))
+    clear = (left_a > LEAST_SHARE * of_a) & (left_b > LEAST_SHARE * of_b) & (sizes > LEAST_SIZE)
+    clear &= counts >= LEAST_PIECE_S / GRID_S / 2
+    products = _sums(of_other, of_one) - a * b / counts
+    return np.where(clear, products, np.nan) / np.where(clear, sizes, 1.0)
 
 
-def _centred(values: FloatArray, known: BoolArray, counts: IntArray) -> FloatArray:
-    """Values (n,) or (m, n) less the mean of those known (m, n); 0 where they are not."""
-    of_known = np.where(known, values, 0.0)
-    means = of_known.sum(axis=1) / np.maximum(counts, 1)
-    return np.where(known, of_known - means[:, None], 0.0)
+def _from_mean(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values (n,) less their mean, 0 where they are not known, and 1 (n,) where they are."""
+    known = np.isfinite(values)
+    mean = values[known].mean() if known.any() else 0.0
+    return np.where(known, values - mean, 0.0), known.astype(np.float64)
+
+
+def _sums(longer: FloatArray, shorter: FloatArray) -> FloatArray:
+    """Sums (m,) of the products of n neighbours (n + m - 1,) with others (n,), at each place."""
+    return np.correlate(longer, shorter, mode="valid")
 
 
 def _peak_sigma_s(correlation: float, lasts_s: float, width_s: float) -> float:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, median
 from odometry.windows.spans import touched
 
 # Between samples, or usual periods: the longer of both is no gap, and values between lie on a line.
@@ -14,7 +14,7 @@ def gaps_between(stamps_s: FloatArray) -> FloatArray:
     lasts_s = np.diff(stamps_s)
     if not len(lasts_s):
         return np.empty((0, 2))
-    long = np.flatnonzero(lasts_s > max(LONGEST_S, LONGEST * float(np.median(lasts_s))))
+    long = np.flatnonzero(lasts_s > max(LONGEST_S, LONGEST * median(lasts_s)))
     return np.stack([stamps_s[long], stamps_s[long + 1]], axis=-1)
 
 

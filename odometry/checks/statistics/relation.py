@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, median
 from odometry.checks.statistics.least_squares import Columns, least_squares, of_products
 
 ROUNDS = 8
@@ -70,7 +70,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     Outliers are left out by their distance from the fit in units of 1.4826 times the median of
     absolute residuals (least trimmed squares by repeated weighting, Rousseeuw and Leroy 1987).
     """
-    rows = np.stack(columns)
+    rows = np.array(columns)
     measured = np.isfinite(target) & np.isfinite(rows).all(axis=0)
     known, of_known = rows[:, measured], target[measured]
     if len(of_known) < LEAST_WINDOWS or not (fitted := Columns(known)).independent:
@@ -78,7 +78,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     coefficients, kept = _least_absolute(fitted, of_known), np.ones(len(of_known), dtype=np.bool_)
     for done in range(ROUNDS):
         sizes = np.abs(of_known - coefficients @ known)
-        now = sizes <= CUTOFF * 1.4826 * _median(sizes) + 1e-12
+        now = sizes <= CUTOFF * 1.4826 * median(sizes) + 1e-12
         changed = bool((now != kept).any())
         if changed and now.sum() >= LEAST_WINDOWS and (few := Columns(known[:, now])).independent:
             fitted, kept = few, now
@@ -96,7 +96,7 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
         all_kept,
         len(of_known),
         target - coefficients @ rows,
-        1 - float(np.sum(left**2) / max(np.sum(of_known**2), 1e-300)),
+        1 - float(left @ left) / max(float(of_known @ of_known), 1e-300),
         _distinct(fitted.values, of_fitted),
     )
 
@@ -116,9 +116,9 @@ def _distinct(columns: FloatArray, target: FloatArray) -> bool:
 
     Scaled singular values: Belsley, Kuh and Welsch 1980, chapter 3.
     """
-    lengths = np.linalg.norm(columns, axis=1)
-    if not (lengths > 0).all():
-        return False
+    lengths = np.sqrt(np.einsum("ij,ij->i", columns, columns))
+    if len(columns) == 1 or not (lengths > 0).all():
+        return bool((lengths > 0).all())
     scaled = columns / lengths[:, None]
     squares = np.linalg.eigvalsh(scaled @ scaled.T)  # of the singular values, the least first
     if squares[0] > LEAST_ANGLE_RAD**2 * squares[-1]:
@@ -145,15 +145,7 @@ def _least_absolute(start: Columns, target: FloatArray) -> FloatArray:
     return coefficients
 
 
-def _median(sizes: FloatArray) -> float:
-    """`np.median` of finite sizes (K,), in a quarter of its time."""
-    half, odd = divmod(len(sizes), 2)
-    if odd:
-        return float(np.partition(sizes, half)[half])
-    return float(np.partition(sizes, (half - 1, half))[half - 1 : half + 1].sum()) / 2
-
-
 def _correlation(a: FloatArray, b: FloatArray) -> float:
     """Correlation about zero: the motion of a robot has a natural zero."""
-    size = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
-    return float(np.sum(a * b) / size) if size > 0 else 0.0
+    size = float(np.sqrt((a @ a) * (b @ b)))
+    return float(a @ b / size) if size > 0 else 0.0

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from numpy.lib.stride_tricks import sliding_window_view
 
 from odometry.checks.statistics.lag import _correlations, lag_between
 
@@ -39,11 +40,29 @@ def test_periodic_motion_has_no_lag():
 
 @pytest.mark.parametrize("unknown", [0, 40])
 def test_correlations_are_of_what_both_know(rng, unknown):
-    """Also where every row of the others is known."""
-    one, others = rng.standard_normal(300), rng.standard_normal((300, 300))
-    others[:, 200 : 200 + unknown] = np.nan
-    others[0] = 2.0
-    known = np.isfinite(others[1])
-    with np.errstate(invalid="ignore"):
-        expected = np.corrcoef(one[known], others[:, known])[0, 1:]
-    np.testing.assert_allclose(_correlations(one, others), expected, atol=1e-12)
+    """Also where all of it is known, and where one of them does not move."""
+    one, other = 3 + rng.standard_normal(300), 2 + rng.standard_normal(1000)
+    other[600:640], one[70 : 70 + unknown] = np.nan, np.nan
+    other[:310] = 2.1
+    others = sliding_window_view(other, len(one))
+    expected = [
+        np.corrcoef(one[known], row[known])[0, 1] if np.ptp(row[known]) > 0 else np.nan
+        for row, known in zip(others, np.isfinite(others) & np.isfinite(one), strict=True)
+    ]
+    np.testing.assert_allclose(_correlations(one, other), expected, atol=1e-12)
+    assert np.isnan(expected[:11]).all()
+
+
+def test_correlations_of_too_little_are_unknown(rng):
+    one, other = rng.standard_normal((2, 200))
+    other[79:] = np.nan  # half of the least piece is 80 values
+    assert np.isnan(_correlations(one, other)).all()
+    other[79] = 1.0
+    assert np.isfinite(_correlations(one, other)).all()
+
+
+def test_a_signal_that_stands_far_from_its_mean_has_no_correlation(rng):
+    one, other = rng.standard_normal((2, 600))
+    other[:300] += 1000 + np.pi
+    other[:250] = 1000 + np.pi
+    assert np.isnan(_correlations(one[:200], other)[:51]).all()
