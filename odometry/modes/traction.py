@@ -217,7 +217,7 @@ def requested(tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
     in proportion to force and speed, so that u_5 = |u_1| (u_1 u_2): the less friction, the more.
     Outward, also backward.
     """
-    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
+    left, right = tread_speeds_m_s[..., 0], tread_speeds_m_s[..., 1]
     speed, difference = (left + right) / 2, right - left
     size = speed**2 + difference**2
     share = speed * difference / np.where(size > 0, size, 1.0)
@@ -228,12 +228,14 @@ def requested(tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
 
 def turns_of(tread_speeds_m_s: FloatArray) -> IntArray:
     """LEFT_TURN or RIGHT_TURN (...), by the side of the turning centre: also backward."""
-    left, right = np.moveaxis(tread_speeds_m_s, -1, 0)
+    left, right = tread_speeds_m_s[..., 0], tread_speeds_m_s[..., 1]
     return np.where((left + right) * (right - left) < 0, RIGHT_TURN, LEFT_TURN)
 
 
 def twists_of(gains: FloatArray, tread_speeds_m_s: FloatArray, track_width: float) -> FloatArray:
-    """Twists (..., 3) of gains (..., 2, 3, 5) at tread speeds (..., 2)."""
-    to_right = (turns_of(tread_speeds_m_s) == RIGHT_TURN)[..., None, None]
-    of_turn = np.where(to_right, gains[..., RIGHT_TURN, :, :], gains[..., LEFT_TURN, :, :])
-    return np.asarray((of_turn @ requested(tread_speeds_m_s, track_width)[..., None])[..., 0])
+    """Twists (..., 3) of gains (..., 2, 3, 5) at tread speeds (2,), or of (2, 3, 5) at (..., 2)."""
+    turns, inputs = turns_of(tread_speeds_m_s), requested(tread_speeds_m_s, track_width)
+    if tread_speeds_m_s.ndim == 1:
+        return np.asarray(gains[..., int(turns), :, :] @ inputs)
+    left, right = (inputs @ gains[turn].T for turn in (LEFT_TURN, RIGHT_TURN))
+    return np.where((turns == RIGHT_TURN)[..., None], right, left)
