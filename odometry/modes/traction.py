@@ -238,4 +238,4 @@ def twists_of(gains: FloatArray, tread_speeds_m_s: FloatArray, track_width: floa
     if tread_speeds_m_s.ndim == 1:
         return np.asarray(gains[..., int(turns), :, :] @ inputs)
     left, right = (inputs @ gains[turn].T for turn in (LEFT_TURN, RIGHT_TURN))
-    return np.where((turns == RIGHT_TURN)[..., None], right, left)
+    return np.asarray(np.where((turns == RIGHT_TURN)[..., None], right, left))
