@@ -4,14 +4,15 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import NamedTuple, Self
 
+import numpy as np
+
 from odometry.arrays import FloatArray
 from odometry.estimation.imm.ekf_bank import EkfBank
-from odometry.estimation.imm.estimator import Imm
+from odometry.estimation.imm.estimator import Imm, is_measured
 from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.gyroscope_bias import BiasReading, with_reading
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.tempered_bank import (
-    OwnFilters,
     TemperedBank,
     with_bias,
     with_lead,
@@ -54,7 +55,7 @@ class ModeFilters(NamedTuple):
     ----------
     imm : Imm
     bank : EkfBank
-        Of the filters that never mix.
+        The same filters, for the covariance of their innovations.
     independent : float
         The share of a measurement that is news.
     """
@@ -82,17 +83,35 @@ class ModeFilters(NamedTuple):
             Of the gyroscope's bias, now.
         """
         led = int(beliefs.together.probabilities.argmax())
-        together = self.imm.step(beliefs.together, *inputs, step_s)
+        together, alone, innovations = self._moved(beliefs, *inputs, step_s)
         together = with_shared_bias(together, self.independent)
-        alone, innovations = OwnFilters(self.imm.bank, self.bank).step(
-            beliefs.alone, *inputs, step_s
-        )
         merged = self.imm.merged(together)
         if reading is not None:
             merged = with_reading(*merged, reading, self.independent)
             together = with_bias(together, *merged)
         alone = with_bias(with_lead(alone, together, led), *merged)
         return ModeBeliefs(together, alone, merged), innovations
+
+    def _moved(
+        self, beliefs: ModeBeliefs, u: FloatArray, z: FloatArray, step_s: float
+    ) -> tuple[ModeBelief, ModeBelief, FloatArray]:
+        """Both estimates a step later, moved at once, and innovations of the filters alone."""
+        mixed, alone = self.imm.mixed(beliefs.together, step_s), beliefs.alone
+        means, covariances = self.imm.bank.predicted(
+            np.stack([mixed.means, alone.means]),
+            np.stack([mixed.covariances, alone.covariances]),
+            u,
+            step_s,
+        )
+        innovations = self.bank.innovations(means[1], covariances[1], z)
+        predicted = ModeBelief(means[0], covariances[0], mixed.log_probabilities)
+        if is_measured(z):
+            updated = self.imm.bank.updated(means, covariances, z)
+            together = self.imm.weighed(predicted, *(both[0] for both in updated))
+            means, covariances = updated[:2]
+        else:
+            together = self.imm.updated(predicted, None)
+        return together, ModeBelief(means[1], covariances[1], alone.log_probabilities), innovations
 
     def begun(self, beliefs: ModeBeliefs, start: Gaussian) -> ModeBeliefs:
         """The beliefs after a gap: motion anew, probabilities and the gyroscope's bias kept."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.estimation.imm.ekf_bank import EkfBank, wrapped
+from odometry.estimation.imm.ekf_bank import wrapped
 from odometry.estimation.imm.estimator import Bank
 from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
@@ -55,7 +55,7 @@ class TemperedBank:
         logs = logs + np.logaddexp(np.log1p(-OUTLIERS), tails)
         bound = MOST_SIGMAS * np.sqrt(entries)
         pull = bound / np.maximum(np.sqrt(squared), bound)
-        step = pull[:, None] * wrapped(corrected - means, self.state_angles)
+        step = pull[..., None] * wrapped(corrected - means, self.state_angles)
         corrected = wrapped(means + step, self.state_angles)
         return corrected, covariances, self.independent * logs, squared
 
@@ -80,32 +80,6 @@ def independent_share(signals: Signals, errors_last_s: float) -> float:
     if errors_last_s <= 0 or len(measured_s) < 2:
         return 1.0
     return min(1.0, float(np.median(np.diff(measured_s))) / errors_last_s)
-
-
-@dataclass(frozen=True)
-class OwnFilters:
-    """Filters that are not mixed.
-
-    Attributes
-    ----------
-    bank : Bank
-        What steps them.
-    filters : EkfBank
-        The same filters, for the covariance of their innovations.
-    """
-
-    bank: Bank
-    filters: EkfBank
-
-    def step(
-        self, belief: ModeBelief, u: FloatArray, z: FloatArray, step_s: float
-    ) -> tuple[ModeBelief, FloatArray]:
-        """The estimate a step later, and normalised innovations (M, m), NaN where not measured."""
-        means, covariances = self.bank.predicted(belief.means, belief.covariances, u, step_s)
-        innovations = self.filters.innovations(means, covariances, z)
-        if np.isfinite(z).any():
-            means, covariances, _, _ = self.bank.updated(means, covariances, z)
-        return ModeBelief(means, covariances, belief.log_probabilities), innovations
 
 
 def with_lead(alone: ModeBelief, belief: ModeBelief, led: int) -> ModeBelief:

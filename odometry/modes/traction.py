@@ -170,12 +170,13 @@ class TractionModes:
         return np.full(len(self.names), self.measurement_variance[3])
 
     def _moved(self, x: FloatArray, u: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
-        """Displacements (M, 3) of a step, and the yaw rates (M,) after it."""
+        """Displacements (..., M, 3) of a step, and the yaw rates (..., M) after it."""
         twists = twists_of(self.gains, u, self.track_width)
-        excess = x[:, 3] - twists[:, 2]
+        excess = x[..., 3] - twists[:, 2]
         lasting, integral_s = self._lasting(dt)
-        moved = twists * dt
-        moved[:, 2] += excess * integral_s
+        moved = np.empty((*excess.shape, 3))
+        moved[...] = twists * dt
+        moved[..., 2] += excess * integral_s
         return moved, twists[:, 2] + excess * lasting
 
     def _lasting(self, dt: float) -> tuple[FloatArray, FloatArray]:
@@ -187,21 +188,23 @@ class TractionModes:
     def _transition(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Poses along exact arcs of the mean yaw rate of the step."""
         moved, omega = self._moved(x, u, dt)
-        reached = se2.compose(x[:, :3], se2.exp(moved))
-        return np.concatenate([reached, omega[:, None], x[:, 4:]], axis=1)
+        reached = se2.compose(x[..., :3], se2.exp(moved))
+        return np.concatenate([reached, omega[..., None], x[..., 4:]], axis=-1)
 
     def _jacobian(self, x: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """The heading swings the step, and so does the yaw rate (M, 5, 5)."""
+        """The heading swings the step, and so does the yaw rate (..., M, 5, 5)."""
         moved, _ = self._moved(x, u, dt)
         lasting, integral_s = self._lasting(dt)
-        cosine, sine = np.cos(x[:, 2]), np.sin(x[:, 2])
-        dx, dy, _ = se2.exp(moved).T
-        by_angle = se2.exp_jacobian(moved)[:, :, 2] * integral_s[:, None]
-        jacobian = np.tile(np.eye(5), (len(x), 1, 1))
-        jacobian[:, 0, 2], jacobian[:, 1, 2] = -sine * dx - cosine * dy, cosine * dx - sine * dy
-        jacobian[:, 0, 3] = cosine * by_angle[:, 0] - sine * by_angle[:, 1]
-        jacobian[:, 1, 3] = sine * by_angle[:, 0] + cosine * by_angle[:, 1]
-        jacobian[:, 2, 3], jacobian[:, 3, 3] = by_angle[:, 2], lasting
+        cosine, sine = np.cos(x[..., 2]), np.sin(x[..., 2])
+        end, by_displacement = se2.linearised_exp(moved)
+        dx, dy = end[..., 0], end[..., 1]
+        by_angle = by_displacement[..., 2] * integral_s[:, None]
+        jacobian = np.zeros((*x.shape, 5))
+        jacobian[..., range(5), range(5)] = 1.0
+        jacobian[..., 0, 2], jacobian[..., 1, 2] = -sine * dx - cosine * dy, cosine * dx - sine * dy
+        jacobian[..., 0, 3] = cosine * by_angle[..., 0] - sine * by_angle[..., 1]
+        jacobian[..., 1, 3] = sine * by_angle[..., 0] + cosine * by_angle[..., 1]
+        jacobian[..., 2, 3], jacobian[..., 3, 3] = by_angle[..., 2], lasting
         return jacobian
 
 

@@ -110,7 +110,7 @@ class VelocityModes:
         return EkfModel(
             states=3,
             transition=lambda x, u, dt: (
-                np.einsum("mij,mj->mi", exact(dt)[..., :3], x) + exact(dt)[..., 3:] @ u
+                (exact(dt)[..., :3] @ x[..., None])[..., 0] + exact(dt)[..., 3:] @ u
             ),
             transition_jacobian=lambda x, u, dt: exact(dt)[..., :3],  # noqa: ARG005
             process_noise=lambda x, u, dt: dt * added * np.eye(3),  # noqa: ARG005

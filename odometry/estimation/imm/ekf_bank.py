@@ -122,7 +122,8 @@ class EkfBank:
     Attributes
     ----------
     model : EkfModel
-        Of all modes: its functions take states (M, n) and give one result for each.
+        Of all modes: its functions take states (M, n) and give one result for each. Where they
+        take those of several estimates at once, (..., M, n), so does the bank.
     modes : int
     """
 
@@ -132,7 +133,7 @@ class EkfBank:
     def predicted(
         self, means: FloatArray, covariances: FloatArray, u: FloatArray, step_s: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Means (M, n) and covariances (M, n, n) a step later."""
+        """Means (..., M, n) and covariances (..., M, n, n) a step later."""
         self.model.check_states(means)
         F = self.model.transition_jacobian(means, u, step_s)
         predicted = F @ covariances @ _transposed(F) + self.model.process_noise(means, u, step_s)
@@ -142,19 +143,19 @@ class EkfBank:
     def updated(
         self, means: FloatArray, covariances: FloatArray, z: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Means, covariances, log-likelihoods (M,), normalised innovations squared (M,)."""
+        """Means, covariances, log-likelihoods (..., M), normalised innovations squared (..., M)."""
         seen = self.model.measured_entries(z)
         R, H = self.model.measurement_covariance, self.model.measurement_jacobian(means)
         residuals = wrapped(z - self.model.measurement(means), self.model.measurement_angles)
         if len(seen) < len(z):
-            R, H, residuals = R[..., seen[:, None], seen], H[..., seen, :], residuals[:, seen]
+            R, H, residuals = R[..., seen[:, None], seen], H[..., seen, :], residuals[..., seen]
         H_transposed = _transposed(H)
         S = H @ covariances @ H_transposed + R
         inverse = np.linalg.inv(S)
         K = covariances @ H_transposed @ inverse
-        squared = np.einsum("ja,jab,jb->j", residuals, inverse, residuals)
+        squared = (residuals[..., None, :] @ inverse @ residuals[..., None])[..., 0, 0]
         corrected = means + (K @ residuals[..., None])[..., 0]
-        remaining = _unit(means.shape[1]) - K @ H
+        remaining = _unit(means.shape[-1]) - K @ H
         joseph = remaining @ covariances @ _transposed(remaining) + K @ R @ _transposed(K)
         return (
             wrapped(corrected, self.model.state_angles),

@@ -99,6 +99,20 @@ class Members:
         )
 
 
+def is_measured(z: FloatArray) -> bool:
+    """Whether an entry of a measurement (m,) is not NaN.
+
+    Raises
+    ------
+    EstimationError
+        If one is infinite.
+    """
+    seen = np.ravel(z).tolist()
+    if any(map(math.isinf, seen)):
+        raise EstimationError(f"a measurement {z}, expected finite numbers, or NaN for none")
+    return not all(map(math.isnan, seen))
+
+
 @dataclass(frozen=True)
 class Imm:
     """An interacting multiple model estimator.
@@ -154,32 +168,44 @@ class Imm:
         return self.updated(self.predicted(belief, u, step_s), z)
 
     def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
-        """Estimate a step later, before a measurement: Salvi 2024 eq. 4-7, then the models."""
+        """Estimate a step later, before a measurement: `mixed`, then the models."""
+        mixed = self.mixed(belief, step_s)
+        means, covariances = self.bank.predicted(mixed.means, mixed.covariances, u, step_s)
+        return ModeBelief(means, covariances, mixed.log_probabilities)
+
+    def mixed(self, belief: ModeBelief, step_s: float) -> ModeBelief:
+        """Where the filters start, and the probabilities after a step: Salvi 2024 eq. 4-7."""
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
         means, covariances = moments(
             weights, belief.means, belief.covariances, self.state_angles
         )  # eq. 6-7
-        means, covariances = self.bank.predicted(means, covariances, u, step_s)
         return ModeBelief(means, covariances, log_predicted)
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
         """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
-        seen = [] if z is None else np.ravel(z).tolist()
-        if z is None or all(map(math.isnan, seen)):
+        if z is None or not is_measured(z):
             logs = floored(predicted.log_probabilities, self.floor)
             return replace(predicted, log_probabilities=logs)
-        if any(map(math.isinf, seen)):
-            raise EstimationError(f"a measurement {z}, expected finite numbers, or NaN for none")
-        means, covariances, log_likelihoods, squared = self.bank.updated(
-            predicted.means, predicted.covariances, z
+        return self.weighed(
+            predicted, *self.bank.updated(predicted.means, predicted.covariances, z)
         )
+
+    def weighed(
+        self,
+        predicted: ModeBelief,
+        means: FloatArray,
+        covariances: FloatArray,
+        log_likelihoods: FloatArray,
+        squared: FloatArray,
+    ) -> ModeBelief:
+        """Estimate after a measurement, of which the bank made these of a prediction."""
         log_weights = predicted.log_probabilities + log_likelihoods  # eq. 9, with eq. 5's c_j
         if not math.isfinite(log_weights.max()):
             raise EstimationError(
-                f"log-likelihoods {log_likelihoods.tolist()} of {z}, expected a finite one of a "
-                "possible mode"
+                f"log-likelihoods {log_likelihoods.tolist()}, expected a finite one of a possible "
+                "mode"
             )
         return ModeBelief(
             means,
