@@ -170,27 +170,26 @@ class Imm:
     def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
         """Estimate a step later, before a measurement: `mixed`, then the models."""
         mixed = self.mixed(belief, step_s)
-        means, covariances = self.bank.predicted(mixed.means, mixed.covariances, u, step_s)
-        return ModeBelief(means, covariances, mixed.log_probabilities)
+        moved = self.bank.predicted(mixed.means, mixed.covariances, u, step_s)
+        return ModeBelief(*moved, mixed.log_probabilities)
 
     def mixed(self, belief: ModeBelief, step_s: float) -> ModeBelief:
         """Where the filters start, and the probabilities after a step: Salvi 2024 eq. 4-7."""
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
-        means, covariances = moments(
-            weights, belief.means, belief.covariances, self.state_angles
+        of_filters = belief.means, belief.covariances
+        return ModeBelief(
+            *moments(weights, *of_filters, self.state_angles), log_predicted
         )  # eq. 6-7
-        return ModeBelief(means, covariances, log_predicted)
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
         """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
         if z is None or not is_measured(z):
             logs = floored(predicted.log_probabilities, self.floor)
             return replace(predicted, log_probabilities=logs)
-        return self.weighed(
-            predicted, *self.bank.updated(predicted.means, predicted.covariances, z)
-        )
+        updated = self.bank.updated(predicted.means, predicted.covariances, z)
+        return self.weighed(predicted, *updated)
 
     def weighed(
         self,
@@ -203,16 +202,10 @@ class Imm:
         """Estimate after a measurement, of which the bank made these of a prediction."""
         log_weights = predicted.log_probabilities + log_likelihoods  # eq. 9, with eq. 5's c_j
         if not math.isfinite(log_weights.max()):
-            raise EstimationError(
-                f"log-likelihoods {log_likelihoods.tolist()}, expected a finite one of a possible "
-                "mode"
-            )
-        return ModeBelief(
-            means,
-            covariances,
-            floored(log_weights, self.floor),
-            ModeInnovations(log_likelihoods, squared),
-        )
+            said = f"log-likelihoods {log_likelihoods.tolist()}"
+            raise EstimationError(f"{said}, expected a finite one of a possible mode")
+        innovations = ModeInnovations(log_likelihoods, squared)
+        return ModeBelief(means, covariances, floored(log_weights, self.floor), innovations)
 
     def merged(self, belief: ModeBelief) -> tuple[FloatArray, FloatArray]:
         """Mean (n,) and covariance (n, n) over all modes: eq. 10-11."""
