@@ -22,7 +22,7 @@ from odometry.models.inputs import Inputs
 MODEL = Contact()
 MEAN_S = 0.2
 LATEST = 8  # answers from which the next one is searched
-FEWEST, MANY = 2.0, 4.0  # contacts a side
+FEWEST, MORE = 2.0, (3.0, 4.0)  # contacts a side: those of two axles, of three, of a tread
 STARTS = ((0.4, 0.01), (0.4, 0.08), (0.8, 0.01), (0.8, 0.08))  # friction, scale of slip
 IN_BALANCE = [0, 4, 5, 2, 8]  # where the parameters are among those of `Contact`
 
@@ -55,9 +55,13 @@ class ContactChange(MotionEffect):
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """On contacts as wide as the robot: wheels at its ends, or all along the treads."""
+        """On contacts as wide as the robot: two wheels a side, three, or all along the treads.
+
+        A wheel in the middle slides otherwise than those at the ends as loads shift: turns may
+        become tighter where those of two or four become wider.
+        """
         half_width = recorded.base.robot.track_width / 2
-        return (cls(half_width), cls(half_width, MANY))
+        return (cls(half_width), *(cls(half_width, contacts) for contacts in MORE))
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -41,7 +41,7 @@ def test_forms_of_contact_forces_are_apart(scenes, known):
     assert [e.key for e in slow if e.name == "slope_sliding"]
 
 
-@pytest.mark.parametrize(("lateral_m_s2", "count"), [(0.05, 0), (0.13, 2)])
+@pytest.mark.parametrize(("lateral_m_s2", "count"), [(0.05, 0), (0.13, 3)])
 def test_inertia_by_contacts_needs_no_fast_turn(known, lateral_m_s2, count):
     """Mass follows late in slow turns, too; of a drive that hardly turns nothing is known."""
     recorded = SimpleNamespace(base=known.base, lateral_m_s2=lateral_m_s2)

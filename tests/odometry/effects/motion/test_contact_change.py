@@ -1,5 +1,7 @@
 """What gravity along a slope, and centrifugal force, change of a force balance."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,9 +9,41 @@ from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.effects.motion.contact_effects import InertiaByContact, SlopeByContact
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
+from odometry.simulation.contact.steady_state import steady_state
+from odometry.simulation.contact.vehicle import contact_vehicle
 
 VALUES = np.array([0.5, 0.2, 0.3, 0.02, 0.01])  # mu, height, half_length, x_cm, slip_scale
 BALANCE = np.array([0.5, 1.0, 0.02, 0.0, 0.2, 0.3, 0.3, 2.0, 0.01])
+
+MU, HEIGHT, HALF_LENGTH, HALF_WIDTH, ROUNDING = 0.67, 0.16, 0.17, 0.2, 0.02
+SLOWER = 0.2  # centrifugal force is 0.04 of its own
+
+
+def settled(speeds, times):
+    """Twists of a robot on three axles at so many times the speeds, slip as much smaller."""
+    body = {
+        "name": "six wheels",
+        "track_width": 2 * HALF_WIDTH,
+        "length": 0.5,
+        "width": 0.5,
+        "wheel_radius": 0.1,
+        "mass": 20.0,
+    }
+    contact = {
+        "x_cm": 0.0,
+        "y_cm": 0.0,
+        "height": HEIGHT,
+        "yaw_inertia": 1.0,
+        "settling": 0.1,
+        "patch_length": 0.05,
+        "friction": MU,
+        "places": [-HALF_LENGTH, 0.0, HALF_LENGTH],
+        "law": "coulomb",
+        "rounding": times * ROUNDING,
+    }
+    twists, still = steady_state(contact_vehicle(body, contact), times * speeds)
+    assert still.all()
+    return twists
 
 
 def change(bench, effect, inputs):
@@ -115,3 +149,21 @@ def test_contacts_all_along_the_treads_resist_a_turn_less_than_those_at_the_ends
     np.testing.assert_array_equal(ends, change(bench, InertiaByContact(0.3), fast))
     assert np.abs(many - ends).max() > 0.01
     assert InertiaByContact(0.3, 4.0).constants() == {"half_width": 0.3, "contacts": 4.0}
+
+
+def test_three_axles_turn_otherwise_when_fast_than_two_or_treads(bench):
+    """Beside the transient simulator, settled: a robot of six wheels, fast and a fifth as fast."""
+    speeds = np.array([[0.9, 1.5], [0.4, 1.2]])
+    of_motion = [settled(speeds, 1.0), settled(speeds, SLOWER) / SLOWER]
+    truth = of_motion[0] - of_motion[1]
+    robot = SimpleNamespace(track_width=2 * HALF_WIDTH)
+    recorded = SimpleNamespace(base=SimpleNamespace(robot=robot), lateral_m_s2=1.0)
+    values = np.array([MU, HEIGHT, HALF_LENGTH, 0.0, ROUNDING])
+    inputs = Inputs(speeds)
+    base = SimpleNamespace(robot=robot)
+    off = {
+        form.constants().get("contacts"): np.abs(form.change(values, inputs, base) - truth).max()
+        for form in InertiaByContact.offered(recorded)
+    }
+    assert off.pop(3.0) < 0.1 * np.abs(truth).max()
+    assert all(one > np.abs(truth).max() for one in off.values())
