@@ -7,14 +7,11 @@ from functools import cached_property
 from odometry.effects.interface.base import Effect
 from odometry.effects.interface.time_course import FromAMoment, Gradual, InBursts
 from odometry.effects.unknown.residual import Residual
-from odometry.gap.config import GapConfig
-from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.own_moments import with_own_moments
-from odometry.gap.locate.predictors import Predictor, predictors
-from odometry.gap.locate.variables import window_variables
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_special, is_the_main_part
+from odometry.gap.name.left_by_names import leaves_no_gap, structure_left
 from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
@@ -28,7 +25,6 @@ from odometry.gap.name.verdict import (
     raises_measured,
     within_noise,
 )
-from odometry.gap.prepare.end_residuals import ends_of
 from odometry.gap.prepare.statistic import Gap, Shown, gap_of, root_mean_square
 from odometry.windows.dense import DenseWindows
 
@@ -181,6 +177,8 @@ class Standing(Search):
         reason = leaves_noise(
             self.fitter.spread(alone), closed, self.config.left_over, self._most_fitted(names)
         )
+        if reason and leaves_no_gap(self.fitter, alone, self.held_out, self.config):
+            reason = ""
         of_all = self.start.cost - found.fitted.cost
         reason = reason or is_the_main_part(self.start.cost - alone.cost, of_all, self.config)
         if not reason:
@@ -241,10 +239,3 @@ class Standing(Search):
     def _measured_at_first(self) -> Gap:
         base, scenes = self.fitter.calibration.base, self.fitter.measured.scenes
         return gap_of(base, (), scenes, self.config.part_s, self.floor.measure)
-
-
-def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:
-    """By the same tests that locate a gap, of the residuals beside the effects of a fit."""
-    scenes = fitter.measured.scenes
-    ends = ends_of(fit.base, fit.effects, scenes, fitter.calibration, config.part_s)
-    return predictors(window_variables(fit.base, fit.effects, scenes), ends)

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import Gap, Measure, Shown, floor_of, floor_there, gap_of
@@ -22,11 +24,11 @@ def measures_of(
     positions, and by many times that of its heading; a gyroscope at fault moves neither. By its
     error alone nothing is missing in a model: positions follow it, where it gives nothing a name.
     """
-    gap, floor = _on(known, held_out, config, Measure.POSITION)
+    gap, floor = on_runs(known, held_out, config, Measure.POSITION)
     if gap.value > max(config.hardly * floor.value, floor.value + gap.doubt_above(floor)):
         return (Measure.POSITION,)
-    for measure in _others(measured, held_out, has_yaw=has_yaw):
-        shown = Shown(*(_on(known, scenes, config, measure) for scenes in (held_out, measured)))
+    for measure in other_measures(measured, held_out, has_yaw=has_yaw):
+        shown = Shown(*(on_runs(known, scenes, config, measure) for scenes in (held_out, measured)))
         far = all(
             gap.value > config.turns_times * floor.value
             for gap, floor in (shown.held_out, shown.measured)
@@ -48,15 +50,15 @@ def shown_as_measured(
 
     A gyroscope that warms up in the first minute is off there, and hardly in the pieces held out.
     """
-    for measure in _others(measured, held_out, has_yaw=has_yaw):
-        gap, floor = _on(known, measured, config, measure)
+    for measure in other_measures(measured, held_out, has_yaw=has_yaw):
+        gap, floor = on_runs(known, measured, config, measure)
         far = gap.value > config.turns_times * floor.value
         if far and gap.is_surely_above(floor, config.turns_above):
             return measure
     return None
 
 
-def _others(
+def other_measures(
     measured: Sequence[DenseWindows], held_out: Sequence[DenseWindows], *, has_yaw: bool
 ) -> list[Measure]:
     """What was measured of the motion besides positions."""
@@ -66,10 +68,15 @@ def _others(
     return others
 
 
-def _on(
-    known: Calibration, scenes: Sequence[DenseWindows], config: GapConfig, measure: Measure
+def on_runs(
+    known: Calibration,
+    scenes: Sequence[DenseWindows],
+    config: GapConfig,
+    measure: Measure,
+    model: tuple[Base, Sequence[Added]] | None = None,
 ) -> tuple[Gap, Gap]:
-    """The gap and its noise floor."""
+    """The gap of a base and its effects, the calibrated base where absent, and its noise floor."""
+    base, effects = model or (known.base, ())
     floor = floor_of(known.held_back, config.part_s, measure)
-    gap = gap_of(known.base, (), scenes, config.part_s, measure)
+    gap = gap_of(base, effects, scenes, config.part_s, measure)
     return gap, floor_there(floor, known, scenes, config)

@@ -5,7 +5,7 @@ import pytest
 from odometry.effects.commands.wheel_scale import WheelScale
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitter
-from odometry.gap.name.accepted_effects import structure_left
+from odometry.gap.name.left_by_names import structure_left
 from odometry.gap.prepare.measured import measured_of
 
 CONFIG = GapConfig()

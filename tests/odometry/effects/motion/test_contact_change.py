@@ -151,7 +151,7 @@ def test_contacts_all_along_the_treads_resist_a_turn_less_than_those_at_the_ends
     assert InertiaByContact(0.3, 4.0).constants() == {"half_width": 0.3, "contacts": 4.0}
 
 
-def test_three_axles_turn_otherwise_when_fast_than_two_or_treads(bench):
+def test_three_axles_turn_otherwise_when_fast_than_two_or_treads():
     """Beside the transient simulator, settled: a robot of six wheels, fast and a fifth as fast."""
     speeds = np.array([[0.9, 1.5], [0.4, 1.2]])
     of_motion = [settled(speeds, 1.0), settled(speeds, SLOWER) / SLOWER]
