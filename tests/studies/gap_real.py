@@ -105,7 +105,7 @@ def study(case: Case, out: Path) -> dict[str, str]:
     except OdometryError as error:
         return row | {"verdict": "not judged", "error": str(error).splitlines()[0]}
     row["seconds"] = f"{time.perf_counter() - begin:.0f}"
-    if case.kind not in ("control", "changed"):
+    if case.kind not in ("control", "changed", "strong"):
         write_gap(result, out / case.name)
         write_gap_report(result, out / case.name)
     if case.kind == "changed":

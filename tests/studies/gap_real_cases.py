@@ -127,11 +127,11 @@ def renamed(run: Run, part: str) -> Run:
     return replace(run, folder=run.folder.with_name(f"{run.folder.name}_{part}"))
 
 
-def late(run: Run) -> Run:
+def late(run: Run, late_s: float = LATE_S) -> Run:
     """Stamps of the poses later."""
     if run.pose is None:
         raise ValueError(f"{run.name} has no pose")
-    columns = {**run.pose.columns, "t": run.pose.stamps_s + LATE_S}
+    columns = {**run.pose.columns, "t": run.pose.stamps_s + late_s}
     return replace(run, pose=replace(run.pose, columns=columns))
 
 

@@ -33,29 +33,29 @@ def changed(runs: Mapping[str, Run]) -> list[Case]:
     return cases
 
 
-def arm(run: Run) -> Run:
-    """Positions of an antenna ARM_M ahead of where the pose says."""
+def arm(run: Run, ahead_m: float = ARM_M) -> Run:
+    """Positions of an antenna ahead of where the pose says."""
     yaw_rad = run.pose.columns["yaw"]
     return _with_pose(
         run,
-        x=run.pose.columns["x"] + ARM_M * np.cos(yaw_rad),
-        y=run.pose.columns["y"] + ARM_M * np.sin(yaw_rad),
+        x=run.pose.columns["x"] + ahead_m * np.cos(yaw_rad),
+        y=run.pose.columns["y"] + ahead_m * np.sin(yaw_rad),
     )
 
 
-def turned(run: Run) -> Run:
-    """The yaw of the poses turned by TURNED_RAD."""
-    return _with_pose(run, yaw=run.pose.columns["yaw"] + TURNED_RAD)
+def turned(run: Run, by_rad: float = TURNED_RAD) -> Run:
+    """The yaw of the poses turned."""
+    return _with_pose(run, yaw=run.pose.columns["yaw"] + by_rad)
 
 
-def large_wheel(run: Run) -> Run:
+def large_wheel(run: Run, scale: float = SCALE) -> Run:
     """The left tread recorded too fast."""
-    return _with_speeds(run, run.odometry.columns["v_left"] * SCALE, None)
+    return _with_speeds(run, run.odometry.columns["v_left"] * scale, None)
 
 
-def lagging(run: Run) -> Run:
-    """Recorded speeds are those that a drive with a lag of LAG_S would answer as it did."""
-    decay = np.exp(-np.diff(run.odometry.stamps_s) / LAG_S)
+def lagging(run: Run, lag_s: float = LAG_S) -> Run:
+    """Recorded speeds are those that a drive with a lag would answer as it did."""
+    decay = np.exp(-np.diff(run.odometry.stamps_s) / lag_s)
     commanded = []
     for name in ("v_left", "v_right"):
         speeds = run.odometry.columns[name]
