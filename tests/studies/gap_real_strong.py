@@ -13,13 +13,14 @@ import argparse
 import csv
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import permutations
 from pathlib import Path
 
 import numpy as np
 
+from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added
 from odometry.errors import OdometryError
 from odometry.gap.prepare.prepared import prepared
@@ -27,6 +28,7 @@ from odometry.gap.prepare.simulate import residuals
 from odometry.gap.prepare.statistic import floor_there
 from odometry.models.icr import Icr
 from odometry.run import Run
+from odometry.windows.dense import DenseWindows
 from tests.studies.gap_real import COLUMNS, CONFIG, study
 from tests.studies.gap_real_cases import Case, in_halves, late, recordings
 from tests.studies.gap_real_changes import MADE, TWICE, arm, lagging, large_wheel, score_of, turned
@@ -112,7 +114,7 @@ def strong_enough(known: Run, measured: Run) -> dict[str, float]:
     return found
 
 
-def _moved_m(base, scenes, change: Added) -> float:
+def _moved_m(base: Base, scenes: Sequence[DenseWindows], change: Added) -> float:
     ends = [
         (residuals(base, (change,), scene) - residuals(base, (), scene))[:, -1, :2]
         for scene in scenes
