@@ -132,7 +132,7 @@ def repeated_poses(track: PoseTrack) -> Iterator[Finding]:
             Level.WARNING,
             f"{100 * share:.0f} % of the poses repeat the one before while the treads move (up to "
             f"{counted(longest, 'time')})",
-            "Poses are repeated: the reference is slower than its log, which holds the last value "
-            "(frozen between updates)",
+            "Poses are repeated: the reference is slower than its log, or reports only once the "
+            "robot has moved by so much; the log holds the last value (frozen between updates)",
             "Keep the rows in which the pose is new",
         )
