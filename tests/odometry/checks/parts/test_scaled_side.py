@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.parts import scaled_side as room
 from odometry.checks.parts.part_changes import part_changes
+from odometry.checks.parts.scaled_side import scaled_side
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import varied
 from tests.odometry.checks.faulty import SENSORS, treads, without_gyroscope
@@ -64,3 +66,14 @@ def test_poses_tell_it_without_a_gyroscope():
 )
 def test_what_is_no_other_scale_of_one_side_is_not_named(change):
     assert not list(part_changes(Evidence(in_part(varied(), change))))
+
+
+def test_nothing_is_searched_where_treads_explain_turns_and_way(monkeypatch):
+    searched = []
+    monkeypatch.setattr(room, "_best", lambda *asked: searched.append(asked))
+    evidence = Evidence(varied())
+    shares = dict.fromkeys(("pose by treads", "gyroscope by treads", "way by treads"), 0.01)
+    assert not list(scaled_side(evidence, shares))
+    assert not searched
+    assert not list(scaled_side(evidence, shares | {"way by treads": 0.03}))
+    assert len(searched) == 2
