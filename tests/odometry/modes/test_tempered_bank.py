@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from odometry.estimation.imm.ekf_bank import EkfBank
-from odometry.modes.tempered_bank import TemperedBank
+from odometry.estimation.imm.mode_belief import ModeBelief
+from odometry.modes.tempered_bank import TemperedBank, with_bias
 from tests.odometry.modes.mode_examples import velocity_set
 
 
@@ -41,3 +42,15 @@ def test_an_absurd_sample_says_next_to_nothing_and_moves_next_to_nothing():
     pull = 5.0 / np.sqrt(own[3])
     np.testing.assert_allclose(own[0] - means, pull[:, None] * (plain[0] - means), rtol=1e-9)
     assert np.abs(own[0] - means).max() < 0.02
+
+
+def test_all_modes_take_the_bias_of_one_estimate_and_keep_the_rest():
+    covariances = np.tile(0.1 + np.diag([0.1, 0.2, 0.3]), (2, 1, 1))
+    belief = ModeBelief(np.arange(6.0).reshape(2, 3), covariances, np.log([0.4, 0.6]))
+    covariance = np.diag([7.0, 8.0, 9.0]) + 0.5
+    given = with_bias(belief, np.array([5.0, 6.0, 0.02]), covariance)
+    np.testing.assert_array_equal(given.means, [[0.0, 1.0, 0.02], [3.0, 4.0, 0.02]])
+    np.testing.assert_array_equal(given.covariances[:, :2, :2], covariances[:, :2, :2])
+    np.testing.assert_array_equal(given.covariances[:, 2], [[0.0, 0.0, 9.5]] * 2)
+    np.testing.assert_array_equal(given.covariances[:, :, 2], [[0.0, 0.0, 9.5]] * 2)
+    np.testing.assert_array_equal(given.log_probabilities, belief.log_probabilities)

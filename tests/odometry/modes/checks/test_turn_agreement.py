@@ -121,3 +121,14 @@ def test_sums_and_integrals_are_those_written_out():
 def test_a_mode_on_a_gyroscope_that_headings_contradict_is_not_named():
     known = replace(track(["a", "a"], ["a"] * 2), headings_disagree=np.array([False, True]))
     assert named_modes(known, 0.9).tolist() == ["a", UNDETERMINED]
+
+
+def test_the_turn_of_a_step_in_which_the_gyroscope_was_silent_is_not_known():
+    def silent(rates):
+        stamps_s = drive().odometry["t"]
+        return np.where((stamps_s > 10.0) & (stamps_s < 12.0), np.nan, rates)
+
+    turn = measured_turn(with_gyro(drive(), silent))
+    known = np.isfinite(turn.gyroscope_rad[np.flatnonzero(LATE_S == 0)[0]])
+    assert not known[(turn.begin_s > 10.1) & (turn.end_s < 11.9)].any()
+    assert known[(turn.end_s < 9.9) | (turn.begin_s > 12.1)].all()
