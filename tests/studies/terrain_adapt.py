@@ -6,7 +6,8 @@ From ground/ to pavements/ (four shared terrains, squares of 96 px): 1, 3 and 10
 terrain of pavements/ are drawn, each draw with its own seed; balanced accuracy by patch on all
 others. `train --adapt` decides by cross-validation inside the drawn photographs which of the three
 to keep; the last column is what it kept, its score, and how often. In colour the old photographs
-are grey: only what is learned of the new ones alone has colour. Features are kept in --out.
+are grey: only what is learned of the new ones alone has colour, with copies in another white
+balance. Features are kept in --out.
 """
 
 import argparse
@@ -23,7 +24,12 @@ from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours.neighbours import Neighbours, vote
 from terrain.classification.neighbours.validation import Samples, cross_validate
 from terrain.classification.old_samples import SamplesBesideOld
-from terrain.classification.photographs.patches import find_photos, load_patches
+from terrain.classification.photographs.patches import (
+    LabelledPatches,
+    find_photos,
+    load_patches,
+)
+from terrain.classification.photographs.white_balance import with_white_balances
 from terrain.classification.presets import PRESETS
 from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, both_features
 
@@ -45,14 +51,31 @@ def read(folder: Path, per_photo: int, store: Path) -> Grounds:
         return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
 
 
-def learned(samples: Samples, *, judged: bool) -> tuple[Neighbours, int, BoolArray]:
+def read_copies(folder: Path, per_photo: int, store: Path) -> Grounds:
+    """Features of the copies in another white balance that a model in colour learns from."""
+    file = store / f"{folder.name}_{SIZE_PX}_{per_photo}_copies.npz"
+    if not file.exists():
+        patches = load_patches(find_photos(folder), SIZE_PX, per_photo)
+        named = np.array(patches.labels), np.array(patches.groups)
+        copies = with_white_balances(LabelledPatches(), patches.images, *named)
+        bank = both_features(copies.images)
+        np.savez(file, bank[:, :0], bank, copies.labels, copies.groups, copies.groups)
+    with np.load(file) as arrays:
+        return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
+
+
+def learned(
+    samples: Samples, copies: Samples | None = None, *, judged: bool
+) -> tuple[Neighbours, int, BoolArray]:
     """Neighbours, k and which held-out patches (n,) are named rightly, where some could be."""
     right, k = np.zeros(0, dtype=bool), PRESET.neighbour_counts[0]
     if judged:
-        found = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, samples, calibrates=True)
+        found = cross_validate(
+            PRESET.neighbours, PRESET.neighbour_counts, samples, copies, calibrates=True
+        )
         right = found.probabilities.argmax(axis=1) == found.codes
         k = found.n_neighbors
-    everything = samples.with_copies(np.arange(len(samples.codes)), None)
+    everything = samples.with_copies(np.arange(len(samples.codes)), copies)
     return PRESET.neighbours().fit(*everything), k, right
 
 
@@ -63,9 +86,14 @@ def answers(model: Neighbours, k: int, features: FloatArray) -> IntArray:
 
 
 def one_draw(
-    old: Grounds, as_it_is: tuple[Neighbours, int], new: Grounds, photos: int, seed: int
+    old: Grounds,
+    as_it_is: tuple[Neighbours, int],
+    all_new: tuple[Grounds, Grounds],
+    photos: int,
+    seed: int,
 ) -> tuple[dict[str, float], str, float]:
     """Accuracy of each way on the photographs that were not drawn; what is kept, and colour's."""
+    new, copies = all_new
     rng = np.random.default_rng(seed)
     drawn = [
         rng.choice(np.unique(new.groups[new.codes == code]), photos, replace=False)
@@ -92,7 +120,8 @@ def one_draw(
         right = {name: of for name, (_, _, of) in ways.items()}
         kept = clearly_best(codes, right, some.groups)
     colour = some.bank[:, COLOUR]
-    model, k, _ = learned(Samples(colour, codes, some.groups), judged=photos > 1)
+    balanced = Samples(copies.bank[:, COLOUR], copies.codes, copies.groups)
+    model, k, _ = learned(Samples(colour, codes, some.groups), balanced, judged=photos > 1)
     return found, kept, balanced_accuracy(test, answers(model, k, rest.bank[:, COLOUR]))
 
 
@@ -107,12 +136,15 @@ def main() -> None:
         store = arguments.out or Path(scratch)
         old = read(images / "ground", PER_OLD_PHOTO, store)
         new = read(images / "pavements", 60, store)
+        copies = read_copies(images / "pavements", 60, store)
     shared = np.intersect1d(old.labels, new.labels)
-    old, new = (grounds.only(np.isin(grounds.labels, shared)) for grounds in (old, new))
+    old, new, copies = (of.only(np.isin(of.labels, shared)) for of in (old, new, copies))
     as_it_is = learned(Samples(old.bank[:, GREY], old.codes, old.groups), judged=True)[:2]
     print(f"{', '.join(shared)}; mean [smallest, largest] of {arguments.draws} draws")
     for photos in (1, 3, 10):
-        draws = [one_draw(old, as_it_is, new, photos, seed) for seed in range(arguments.draws)]
+        draws = [
+            one_draw(old, as_it_is, (new, copies), photos, seed) for seed in range(arguments.draws)
+        ]
         columns = {name: [found[name] for found, _, _ in draws] for name in (OLD, MIXED, ALONE)}
         columns["kept"] = [found[kept] for found, kept, _ in draws]
         columns["alone, colour"] = [colour for _, _, colour in draws]
