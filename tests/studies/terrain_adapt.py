@@ -24,14 +24,9 @@ from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours.neighbours import Neighbours, vote
 from terrain.classification.neighbours.validation import Samples, cross_validate
 from terrain.classification.old_samples import SamplesBesideOld
-from terrain.classification.photographs.patches import (
-    LabelledPatches,
-    find_photos,
-    load_patches,
-)
-from terrain.classification.photographs.white_balance import with_white_balances
+from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, both_features
+from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, balanced_copies, both_features
 
 PRESET = PRESETS["default"]
 COLOUR = COLUMNS["bank and colour"]
@@ -55,9 +50,7 @@ def read_copies(folder: Path, per_photo: int, store: Path) -> Grounds:
     """Features of the copies in another white balance that a model in colour learns from."""
     file = store / f"{folder.name}_{SIZE_PX}_{per_photo}_copies.npz"
     if not file.exists():
-        patches = load_patches(find_photos(folder), SIZE_PX, per_photo)
-        named = np.array(patches.labels), np.array(patches.groups)
-        copies = with_white_balances(LabelledPatches(), patches.images, *named)
+        copies = balanced_copies(load_patches(find_photos(folder), SIZE_PX, per_photo))
         bank = both_features(copies.images)
         np.savez(file, bank[:, :0], bank, copies.labels, copies.groups, copies.groups)
     with np.load(file) as arrays:

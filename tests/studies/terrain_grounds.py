@@ -19,7 +19,12 @@ from terrain.classification.neighbours.rejection import (
 )
 from terrain.classification.neighbours.validation import Samples, best_way
 from terrain.classification.photographs.augmentation import Augmentation, load_copies
-from terrain.classification.photographs.patches import find_photos, load_patches
+from terrain.classification.photographs.patches import (
+    LabelledPatches,
+    find_photos,
+    load_patches,
+)
+from terrain.classification.photographs.white_balance import with_white_balances
 from terrain.classification.presets import PRESETS, Preset
 
 REJECTED_SHARE = 0.05
@@ -88,6 +93,12 @@ def read_copies(folder: Path, size_px: int, store: Path) -> Grounds:
     with np.load(file) as arrays:
         bank, labels, groups, names = (arrays[f"arr_{i}"] for i in range(4))
         return Grounds(bank[:, :PER_COPY], bank, labels, groups, names)
+
+
+def balanced_copies(patches: LabelledPatches) -> LabelledPatches:
+    """The copies in another white balance that a model in colour learns beside patches."""
+    named = np.array(patches.labels), np.array(patches.groups)
+    return with_white_balances(LabelledPatches(), patches.images, *named)
 
 
 @dataclass(frozen=True)

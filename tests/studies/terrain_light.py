@@ -23,9 +23,8 @@ from terrain.classification.held_out import balanced_accuracy, photo_votes
 from terrain.classification.neighbours.calibration import reliability
 from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.photographs.patches import find_photos, load_patches
-from terrain.classification.photographs.white_balance import EVERY, in_another_white_balance
 from terrain.classification.presets import PRESETS
-from tests.studies.terrain_grounds import GREY, PER_COPY, Grounds, choose
+from tests.studies.terrain_grounds import GREY, PER_COPY, Grounds, balanced_copies, choose
 
 SIZE_PX, SURE = 96, 0.8
 COLOUR = ("bank and colour",)
@@ -47,14 +46,16 @@ def in_colour(folder: Path, name: str, store: Path) -> Grounds:
     """Features in colour of the patches of a folder, in a light or as copies for training."""
     file = store / f"{folder.name}_{name.replace(' ', '_')}.npz"
     if not file.exists():
-        patches = load_patches(find_photos(folder), SIZE_PX)
+        shown = load_patches(find_photos(folder), SIZE_PX)
+        photos = [str(photo) for photo in shown.photos]
         if name == "copies":
-            images = [in_another_white_balance(image) for image in patches.images]
+            shown = balanced_copies(shown)
+            photos = shown.groups
+            images = shown.images
         else:
-            images = [in_light(image, LIGHTS[name]) for image in patches.images]
+            images = [in_light(image, LIGHTS[name]) for image in shown.images]
         made = shared_feature_matrix(images, PRESETS["default"].colour_features, processes=1)
-        photos = [str(photo) for photo in patches.photos]
-        np.savez(file, made, patches.labels, patches.groups, photos)
+        np.savez(file, made, shown.labels, shown.groups, photos)
     with np.load(file) as arrays:
         made, *named = (arrays[f"arr_{i}"] for i in range(4))
     bank = np.hstack([np.zeros((len(made), GREY.stop)), made])  # nothing in grey is asked for
@@ -101,8 +102,7 @@ def main() -> None:
         for folder in arguments.folders:
             shown = {name: in_colour(images / folder, name, store) for name in LIGHTS}
             copies = in_colour(images / folder, "copies", store)
-            second = copies.only(np.arange(0, len(copies.labels), EVERY))
-            for with_copies in (None, second):
+            for with_copies in (None, copies):
                 print(f"{folder}, {'with' if with_copies else 'without'} copies")
                 print("  light         patch  photo  error   sure  wrong refused")
                 measured(shown, with_copies)

@@ -179,9 +179,8 @@ class Imm:
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
         of_filters = belief.means, belief.covariances
-        return ModeBelief(
-            *moments(weights, *of_filters, self.state_angles), log_predicted
-        )  # eq. 6-7
+        mixed = moments(weights, *of_filters, self.state_angles)  # eq. 6-7
+        return ModeBelief(*mixed, log_predicted)
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
         """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""
