@@ -15,6 +15,7 @@ from terrain.classification.features.feature_jobs import Transformer, shared_fea
 from terrain.classification.learning import LearningClassifier
 from terrain.classification.neighbours.validation import Samples
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
+from terrain.classification.photographs.other_light import with_other_light
 from terrain.classification.photographs.patches import LabelledPatches
 from terrain.classification.photographs.trained_on import (
     TrainedOn,
@@ -22,7 +23,6 @@ from terrain.classification.photographs.trained_on import (
     holds_images,
     labels_and_groups,
 )
-from terrain.classification.photographs.white_balance import with_white_balances
 from terrain.classification.presets import PRESETS
 
 
@@ -33,17 +33,17 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
     ----------
     preset : {"default", "fast", "chen2023"}
         ``chen2023`` is the paper: SFTA of the grey image (n_t = 4), unscaled, Euclidean nearest
-        neighbours. ``default`` takes SFTA of 19 filtered copies of the grey image, counts by
-        area, scaled and projected on shrunk discriminants before the neighbours vote. Whether
-        discriminants may curve (random Fourier features) is chosen, and probabilities are
-        calibrated, in cross-validation. ``fast`` does so with four of the copies, for small
-        computers.
+        neighbours. ``default`` takes SFTA of the grey image at three scales (in colour of all
+        filtered copies) and joint and Gabor statistics, scaled and projected on shrunk
+        discriminants before the neighbours vote. Whether discriminants may curve (random Fourier
+        features) is chosen, and probabilities are calibrated, in cross-validation. ``fast`` does
+        so with SFTA of four filtered copies, for small computers. Both learn every second patch
+        in another light as well.
     colour : bool
         Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour depends
         on camera, white balance and light, and where each class was photographed by another
         camera, the classifier recognises the camera. Use it where training and use share one
-        camera; it learns from copies in another white balance as well. It stays off if the
-        training patches are grey; see `colour_`.
+        camera. It stays off if the training patches are grey; see `colour_`.
     metres_per_pixel : float, optional
         The scale of the patches on the terrain; kept for programs that cut patches.
     rejected_share : float
@@ -197,8 +197,8 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
             labels, photos = labels_and_groups(len(X), y, groups)
             strange = self._strange_patches(X, photos)
             made_by = self._made_by([*X, *altered.images], labels)
-            if self.colour_ and not PRESETS[self.preset].as_published:
-                altered = with_white_balances(altered, X, labels, photos)
+            if not PRESETS[self.preset].as_published:
+                altered = with_other_light(altered, X, (labels, photos), colour=self.colour_)
             features = shared_feature_matrix(
                 [*X, *altered.images, *strange],
                 made_by,

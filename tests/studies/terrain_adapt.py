@@ -6,8 +6,8 @@ From ground/ to pavements/ (four shared terrains, squares of 96 px): 1, 3 and 10
 terrain of pavements/ are drawn, each draw with its own seed; balanced accuracy by patch on all
 others. `train --adapt` decides by cross-validation inside the drawn photographs which of the three
 to keep; the last column is what it kept, its score, and how often. In colour the old photographs
-are grey: only what is learned of the new ones alone has colour, with copies in another white
-balance. Features are kept in --out.
+are grey: only what is learned of the new ones alone has colour. New photographs have copies in
+another light beside them. Features are kept in --out.
 """
 
 import argparse
@@ -20,17 +20,18 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from terrain.classification.adaptation import ALONE, MIXED, OLD, clearly_best
+from terrain.classification.features.feature_jobs import shared_feature_matrix
 from terrain.classification.held_out import balanced_accuracy
 from terrain.classification.neighbours.neighbours import Neighbours, vote
 from terrain.classification.neighbours.validation import Samples, cross_validate
 from terrain.classification.old_samples import SamplesBesideOld
 from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS
-from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, balanced_copies, both_features
+from tests.studies.terrain_grounds import COLUMNS, GREY, Grounds, both_features, lit_copies
 
 PRESET = PRESETS["default"]
 COLOUR = COLUMNS["bank and colour"]
-SIZE_PX, PER_OLD_PHOTO = 96, 12
+SIZE_PX, PER_PHOTO, PER_OLD_PHOTO = 96, 60, 12
 
 
 def read(folder: Path, per_photo: int, store: Path) -> Grounds:
@@ -46,15 +47,18 @@ def read(folder: Path, per_photo: int, store: Path) -> Grounds:
         return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
 
 
-def read_copies(folder: Path, per_photo: int, store: Path) -> Grounds:
-    """Features of the copies in another white balance that a model in colour learns from."""
-    file = store / f"{folder.name}_{SIZE_PX}_{per_photo}_copies.npz"
+def read_copies(folder: Path, columns: slice, store: Path) -> Grounds:
+    """Features of the copies in another light that a model learns from, in grey or in colour."""
+    colour = columns is COLOUR
+    file = store / f"{folder.name}_{SIZE_PX}_copies_{'colour' if colour else 'grey'}.npz"
     if not file.exists():
-        copies = balanced_copies(load_patches(find_photos(folder), SIZE_PX, per_photo))
-        bank = both_features(copies.images)
-        np.savez(file, bank[:, :0], bank, copies.labels, copies.groups, copies.groups)
+        copies = lit_copies(load_patches(find_photos(folder), SIZE_PX, PER_PHOTO), colour=colour)
+        settings = PRESET.colour_features if colour else PRESET.features
+        made = shared_feature_matrix(copies.images, settings, processes=1)
+        np.savez(file, made, copies.labels, copies.groups)
     with np.load(file) as arrays:
-        return Grounds(*(arrays[f"arr_{i}"] for i in range(5)))
+        made, labels, groups = (arrays[f"arr_{i}"] for i in range(3))
+        return Grounds(made[:, :0], made, labels, groups, groups)
 
 
 def learned(
@@ -81,12 +85,12 @@ def answers(model: Neighbours, k: int, features: FloatArray) -> IntArray:
 def one_draw(
     old: Grounds,
     as_it_is: tuple[Neighbours, int],
-    all_new: tuple[Grounds, Grounds],
+    all_new: tuple[Grounds, Samples, Samples],
     photos: int,
     seed: int,
 ) -> tuple[dict[str, float], str, float]:
     """Accuracy of each way on the photographs that were not drawn; what is kept, and colour's."""
-    new, copies = all_new
+    new, in_grey, in_colour = all_new
     rng = np.random.default_rng(seed)
     drawn = [
         rng.choice(np.unique(new.groups[new.codes == code]), photos, replace=False)
@@ -97,9 +101,10 @@ def one_draw(
     codes, test = new.codes[shown], new.codes[~shown]
     grey = some.bank[:, GREY]
     ways: dict[str, tuple[Neighbours, int, BoolArray]] = {
-        ALONE: learned(Samples(grey, codes, some.groups), judged=photos > 1),
+        ALONE: learned(Samples(grey, codes, some.groups), in_grey, judged=photos > 1),
         MIXED: learned(
             SamplesBesideOld(grey, codes, some.groups, old.bank[:, GREY], old.codes),
+            in_grey,
             judged=photos > 1,
         ),
     }
@@ -113,8 +118,7 @@ def one_draw(
         right = {name: of for name, (_, _, of) in ways.items()}
         kept = clearly_best(codes, right, some.groups)
     colour = some.bank[:, COLOUR]
-    balanced = Samples(copies.bank[:, COLOUR], copies.codes, copies.groups)
-    model, k, _ = learned(Samples(colour, codes, some.groups), balanced, judged=photos > 1)
+    model, k, _ = learned(Samples(colour, codes, some.groups), in_colour, judged=photos > 1)
     return found, kept, balanced_accuracy(test, answers(model, k, rest.bank[:, COLOUR]))
 
 
@@ -128,16 +132,15 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         store = arguments.out or Path(scratch)
         old = read(images / "ground", PER_OLD_PHOTO, store)
-        new = read(images / "pavements", 60, store)
-        copies = read_copies(images / "pavements", 60, store)
+        new = read(images / "pavements", PER_PHOTO, store)
+        copies = [read_copies(images / "pavements", columns, store) for columns in (GREY, COLOUR)]
     shared = np.intersect1d(old.labels, new.labels)
-    old, new, copies = (of.only(np.isin(of.labels, shared)) for of in (old, new, copies))
+    old, new, *copies = (of.only(np.isin(of.labels, shared)) for of in (old, new, *copies))
+    all_new = new, *(Samples(of.bank, of.codes, of.groups) for of in copies)
     as_it_is = learned(Samples(old.bank[:, GREY], old.codes, old.groups), judged=True)[:2]
     print(f"{', '.join(shared)}; mean [smallest, largest] of {arguments.draws} draws")
     for photos in (1, 3, 10):
-        draws = [
-            one_draw(old, as_it_is, (new, copies), photos, seed) for seed in range(arguments.draws)
-        ]
+        draws = [one_draw(old, as_it_is, all_new, photos, seed) for seed in range(arguments.draws)]
         columns = {name: [found[name] for found, _, _ in draws] for name in (OLD, MIXED, ALONE)}
         columns["kept"] = [found[kept] for found, kept, _ in draws]
         columns["alone, colour"] = [colour for _, _, colour in draws]

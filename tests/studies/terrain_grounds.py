@@ -19,12 +19,12 @@ from terrain.classification.neighbours.rejection import (
 )
 from terrain.classification.neighbours.validation import Samples, best_way
 from terrain.classification.photographs.augmentation import Augmentation, load_copies
+from terrain.classification.photographs.other_light import with_other_light
 from terrain.classification.photographs.patches import (
     LabelledPatches,
     find_photos,
     load_patches,
 )
-from terrain.classification.photographs.white_balance import with_white_balances
 from terrain.classification.presets import PRESETS, Preset
 
 REJECTED_SHARE = 0.05
@@ -95,10 +95,10 @@ def read_copies(folder: Path, size_px: int, store: Path) -> Grounds:
         return Grounds(bank[:, :PER_COPY], bank, labels, groups, names)
 
 
-def balanced_copies(patches: LabelledPatches) -> LabelledPatches:
-    """The copies in another white balance that a model in colour learns beside patches."""
+def lit_copies(patches: LabelledPatches, *, colour: bool) -> LabelledPatches:
+    """The copies in another light that a model learns beside patches."""
     named = np.array(patches.labels), np.array(patches.groups)
-    return with_white_balances(LabelledPatches(), patches.images, *named)
+    return with_other_light(LabelledPatches(), patches.images, named, colour=colour)
 
 
 @dataclass(frozen=True)
