@@ -11,6 +11,8 @@ from terrain.errors import ImageError
 from terrain.image_size import PIXELS, is_whole, stated_size
 
 IMAGE_BYTES = 256 * 1024**2
+VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".webm", ".m4v")
+FRAMES_FIRST = "; of a video give frames, as by: ffmpeg -i FILE -vf fps=2 frame_%04d.png"
 # Weights of red, green and blue, and what rounds half up once digits are cut off: sums are whole
 # hundredths, so that a tenth of one more outweighs rounding errors (1e-4) and rounds none up
 ROUNDED_GREY = np.array([[0.30, 0.59, 0.11, 0.501]], dtype=np.float32)
@@ -77,8 +79,10 @@ def decode_image(encoded: bytes, where: str = "image") -> ByteImage:
     """
     size = stated_size(encoded)
     if size is None:
+        hint = FRAMES_FIRST if where.lower().endswith(VIDEOS) else ""
         raise ImageError(
             f"{where}: {len(encoded)} bytes that do not decode as a JPEG, PNG, TIFF or BMP image"
+            f"{hint}"
         )
     width, height = size
     if not 0 < width * height <= PIXELS:

@@ -241,7 +241,11 @@ def position_notes(fit: Fit) -> tuple[str, ...]:
         f"yaw is carried by {turns}"
     )
     if of.arm_stated:
-        return (basis,)
+        return (
+            basis,
+            "[sensors] pose says where the antenna sits: where it is off, x_icr, y_left and "
+            "y_right are off by as much, and their intervals do not hold that",
+        )
     return (
         basis,
         "[sensors] pose is not stated, so the antenna is taken to be at the robot's origin; an "

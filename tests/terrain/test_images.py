@@ -167,3 +167,9 @@ def test_an_image_that_was_cut_off_is_refused(tmp_path, colour, suffix):
             read_image(file)
     file.write_bytes(encoded + b"something of the camera's own")
     assert read_image(file).shape == (120, 170, 3)
+
+
+def test_of_a_video_frames_are_asked_for(tmp_path):
+    (tmp_path / "walk.mp4").write_bytes(b"no image")
+    with pytest.raises(ImageError, match=r"walk\.mp4: 8 bytes .* of a video give frames"):
+        read_image(tmp_path / "walk.mp4")

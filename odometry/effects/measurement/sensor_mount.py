@@ -13,15 +13,18 @@ from odometry.geometry import se2
 
 
 class LeverArm(MeasurementEffect):
-    """The measured position is that of a point ahead and to the left of the origin."""
+    """The measured position is that of a point ahead and to the left of the stated place."""
 
     name = "lever_arm"
     form = "constant"
-    in_words = "a reference that is not at the robot's origin"
+    in_words = "a reference that sits elsewhere than stated"
     equation = "position -> position + R(yaw) (x_arm, y_arm)"
     source = "definition"
     looks_like = "sideways motion in turns, and distances that differ in left and right turns"
-    remedy = "measure where the sensor sits and state it in run.toml, [sensors]"
+    remedy = (
+        "measure where the sensor sits and state it in run.toml, [sensors]: x_arm and y_arm are "
+        "added to what pose says there (nothing: 0, 0)"
+    )
     of_reference = True
     alike: ClassVar[Mapping[str, str]] = {
         "lateral_skid": DISTINGUISHED_BY,

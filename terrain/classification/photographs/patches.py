@@ -77,7 +77,11 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
     paths = [path for path in found if not _is_hidden(path)]
     check_classes(root, sorted({path.parent.name for path in paths}), SUFFIXES)
     if not paths:
-        raise PatchError(f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png")
+        beside = any(path.suffix.lower() in SUFFIXES for path in root.iterdir())
+        hint = f" (images without labels are given one by one: {root}/*)" if beside else ""
+        raise PatchError(
+            f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png{hint}"
+        )
     groups = _photo_ids(read_manifest(root), paths)
     photos = [
         LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))

@@ -29,7 +29,7 @@ def test_a_named_effect_with_its_numbers(scaled_result):
     said = sentences(scaled_result)
     assert said[0] == (
         "Missing in icr: wheels of another size, or constant slip (wheel_scale) and a reference "
-        "that is not at the robot's origin (lever_arm); these runs do not distinguish "
+        "that sits elsewhere than stated (lever_arm); these runs do not distinguish "
         "wheel_scale from traction_loss."
     )
     share, closing = held_out_share(scaled_result), scaled_result.holdout
@@ -90,7 +90,7 @@ def test_a_fault_that_may_be_of_the_robot_is_not_said_to_be_of_a_sensor(scaled_r
     arm = NamedEffect(Added(LeverArm(), two), two, two, 0.2, 0.1, 50.0)
     skid = Equivalent("lateral_skid", "lever_arm", "a second antenna", by_equation=True)
     said = sentences(replace(scaled_result, effects=(arm,), equivalent=(skid,)))
-    assert said[0].startswith("A sensor or the robot: a reference that is not at the robot's")
+    assert said[0].startswith("A sensor or the robot: a reference that sits elsewhere than stated")
 
 
 def test_a_turned_reference_may_be_a_robot_that_goes_to_one_side(scaled_result):

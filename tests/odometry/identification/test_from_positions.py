@@ -114,6 +114,8 @@ def test_the_noise_is_found_and_more_of_it_needs_longer_stretches(noise_m):
     words = position_notes(found)
     assert "the treads alone" in words[0]
     assert "[sensors] pose is not stated" in words[1]
+    stated = replace(found, windows=replace(found.windows, arm_stated=True))
+    assert "where it is off, x_icr, y_left and y_right are off" in position_notes(stated)[1]
 
 
 def test_straight_drives_determine_no_widths():

@@ -40,6 +40,12 @@ def test_a_class_does_not_vanish(tmp_path, write, lost):
         find_photos(tmp_path)
 
 
+def test_a_folder_of_images_without_terrain_says_how_to_give_them(tmp_path, write):
+    write("a.jpg")
+    with pytest.raises(PatchError, match=r"holds no photographs; .* given one by one: .*/\*"):
+        find_photos(tmp_path)
+
+
 def test_other_folders_are_no_classes(tmp_path, write):
     write("sand/a.jpg")
     for name in ("notes/read.me", ".cache/a.webp", "empty/.keep"):
