@@ -12,6 +12,7 @@ from sklearn.utils.validation import validate_data
 from odometry.arrays import AnyArray, ByteImage
 from odometry.errors import ConfigError
 from terrain.classification.features.feature_jobs import Transformer, shared_feature_matrix
+from terrain.classification.features.features import FeatureSettings
 from terrain.classification.learning import LearningClassifier
 from terrain.classification.neighbours.validation import Samples
 from terrain.classification.old_samples import OldSamples, SamplesBesideOld
@@ -38,7 +39,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         discriminants before the neighbours vote. Whether discriminants may curve (random Fourier
         features) is chosen, and probabilities are calibrated, in cross-validation. ``fast`` does
         so with SFTA of four filtered copies, for small computers. Both learn every second patch
-        in another light as well.
+        in another light as well, where they make the features.
     colour : bool
         Add SFTA of two colour differences (not with ``chen2023``). Off by default: colour depends
         on camera, white balance and light, and where each class was photographed by another
@@ -155,7 +156,8 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
         Parameters
         ----------
         X : sequence of images, or (n, F) array
-            Square patches of one size, grey (S, S) or RGB (S, S, 3); or features.
+            Square patches of one size, grey (S, S) or RGB (S, S, 3); or features, which have no
+            copies in another light beside them.
         y : sequence of str
             The terrain of each patch.
         groups : sequence of str, optional
@@ -197,7 +199,7 @@ class TerrainClassifier(LearningClassifier, ClassifierMixin, BaseEstimator):  # 
             labels, photos = labels_and_groups(len(X), y, groups)
             strange = self._strange_patches(X, photos)
             made_by = self._made_by([*X, *altered.images], labels)
-            if not PRESETS[self.preset].as_published:
+            if isinstance(made_by, FeatureSettings) and not PRESETS[self.preset].as_published:
                 altered = with_other_light(altered, X, (labels, photos), colour=self.colour_)
             features = shared_feature_matrix(
                 [*X, *altered.images, *strange],

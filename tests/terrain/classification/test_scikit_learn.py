@@ -9,6 +9,7 @@ from sklearn.exceptions import NotFittedError
 from sklearn.model_selection import GridSearchCV, GroupKFold, cross_val_score
 from sklearn.pipeline import make_pipeline
 
+from terrain.classification import classifier
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.sfta_features import SftaFeatures
 from terrain.errors import ImageError, ModelFileError
@@ -72,7 +73,9 @@ def test_without_groups_each_patch_is_of_its_own(whole):
 
 
 @pytest.mark.parametrize("preset", ["default", "fast", "chen2023"])
-def test_features_made_before_give_what_images_give(whole, preset):
+def test_features_made_before_give_what_images_give(whole, preset, monkeypatch):
+    """But for copies in another light, which are made of images."""
+    monkeypatch.setattr(classifier, "with_other_light", lambda copies, *_, **__: copies)
     images, labels, groups = whole
     of_images = TerrainClassifier(preset).fit(images, labels, groups)
     pipeline = make_pipeline(SftaFeatures(preset), TerrainClassifier(preset))
