@@ -27,6 +27,7 @@ MOST_GREY = 1.15
 COLOURLESS = "the image is grey (its three channels are equal), the model was trained with colour"
 ONE_CHANNEL = "the image is grey, the model was trained with colour"
 GREYISH = "nearly grey, unlike the training photographs of a model in colour"
+TURNED = "red, green and blue seem to be in another order than in the training photographs"
 # Of any image: three of four such names would be wrong.
 PROBABLE = 0.25
 IMPROBABLE = f"right with a probability below {PROBABLE}"
@@ -79,7 +80,7 @@ class Classification:
         """The answer, ``unknown`` where its name is not right with `TRUSTED` or more.
 
         No name is left where the images together, of which this is one, are far beyond training,
-        or nearly grey before a model in colour.
+        or before a model in colour nearly grey or with channels in another order.
         Nothing is asked where they are like the training photographs, as many right names would be
         lost as wrong ones; but where images of another camera would be like them as well, it is.
 
@@ -92,8 +93,9 @@ class Classification:
         """
         if likeness is None or not likeness.images or self.label == UNKNOWN:
             return self
-        if likeness.grey_beyond > MOST_GREY:
-            return replace(self, label=UNKNOWN, reason=GREYISH)
+        if likeness.grey_beyond > MOST_GREY or likeness.turned_beyond > 1:
+            reason = TURNED if likeness.turned_beyond > 1 else GREYISH  # grey is like any order
+            return replace(self, label=UNKNOWN, reason=reason)
         if not likeness.is_unlike:
             return self._if_trusted(UNNOTICED) if may_pass_unnoticed(noticed_share) else self
         learned = self.probability_right is not None

@@ -4,7 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import COLOURLESS, DOUBTFUL, GREYISH, UNNOTICED, Classification
+from terrain.classification.answer import (
+    COLOURLESS,
+    DOUBTFUL,
+    GREYISH,
+    TURNED,
+    UNNOTICED,
+    Classification,
+)
 from terrain.classification.no_ground import DARK, OVEREXPOSED
 from terrain.classification.training_light import BY_LIGHT
 from terrain.region.region import Region
@@ -59,7 +66,7 @@ class ImageLabel:
         ``unknown`` says that it resembles none with a name; not where a name is doubtful, the image
         white or black, or where the tread strips differ.
         """
-        doubted = (DOUBTFUL, GREYISH, UNNOTICED, BY_LIGHT)
+        doubted = (DOUBTFUL, GREYISH, TURNED, UNNOTICED, BY_LIGHT)
         of_nothing = (*doubted, OVEREXPOSED, DARK, COLOURLESS)
         says_nothing = self.is_astride or self.reason.startswith(of_nothing)
         return self.label != UNKNOWN or not says_nothing

@@ -1,9 +1,11 @@
 """How much colour an image shows beyond one tint: what red and blue do that green does not say."""
 
+from collections.abc import Iterator
+
 import cv2
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
+from odometry.arrays import AnyArray, ByteImage, FloatArray
 
 GRIDS = (None, 24, 8)  # of all pixels, and of the means of so many squares a side
 CHROMA_NUMBERS = 3 * len(GRIDS)
@@ -18,9 +20,13 @@ def chroma_of(image: ByteImage) -> FloatArray:
     Of each grid the largest and the smallest deviation of red and blue about the line that they
     follow with green, and the deviation of green. Grey times a tint stays on its line.
     """
+    return np.array([number for kept in unclipped(image) for number in _deviations(kept)])
+
+
+def unclipped(image: ByteImage) -> Iterator[AnyArray]:
+    """Red, green and blue (n, 3) of each grid of an image (H, W, 3), without what is clipped."""
     pixels: AnyArray = image.astype(np.float32)
     clipped: AnyArray = (image.max(axis=2) >= CLIPPED).astype(np.float32)
-    numbers: list[float] = []
     for side in GRIDS:
         here, full = pixels, clipped
         if side is not None:
@@ -29,13 +35,12 @@ def chroma_of(image: ByteImage) -> FloatArray:
                 np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_AREA))
                 for of in (pixels, clipped)
             )
-        numbers += _deviations(here, full == 0)
-    return np.array(numbers)
+        used = full == 0
+        yield here[used] if used.mean() >= LEAST_UNCLIPPED else here.reshape(-1, 3)
 
 
-def _deviations(pixels: AnyArray, used: BoolArray) -> list[float]:
+def _deviations(kept: AnyArray) -> list[float]:
     """The three numbers of one grid."""
-    kept = pixels[used] if used.mean() >= LEAST_UNCLIPPED else pixels.reshape(-1, 3)
     centred = (kept - kept.mean(axis=0)).astype(np.float64)
     covariance = centred.T @ centred / len(centred)
     with_green = covariance[[0, 2], 1]

@@ -13,6 +13,7 @@ from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.likeness.look import spread_patches
 from terrain.classification.likeness.nearly_grey import NearlyGrey
 from terrain.classification.likeness.run_limits import drawn_runs, rows_of_photographs
+from terrain.classification.likeness.turned_channels import ORDERS, TurnedChannels
 
 COLOUR_FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
 WHITE_SHARE = 0.01  # of white, added to each mean: black has no logarithm
@@ -51,12 +52,15 @@ class ColourRange:
         Whether some patches of every terrain are grey images in three channels.
     nearly_grey : NearlyGrey or None
         None of files before version 0.37.
+    turned : TurnedChannels or None
+        None of files before version 0.45.
     """
 
     colours: FloatArray
     limit: float
     knows_grey: bool = False
     nearly_grey: NearlyGrey | None = None
+    turned: TurnedChannels | None = None
 
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
@@ -72,8 +76,8 @@ class ColourRange:
         limit = float(max(np.quantile(means, 1 - COLOUR_FALSE_ALARMS), 1e-9))
         grey = codes[[is_colourless(patch) for patch in patches]]
         knows_grey = set(grey.tolist()) == set(codes.tolist())
-        of_grey = NearlyGrey.of(patches, codes, groups)
-        return cls(colours, limit, knows_grey=knows_grey, nearly_grey=of_grey)
+        shown = patches, codes, groups
+        return cls(colours, limit, knows_grey, NearlyGrey.of(*shown), TurnedChannels.of(*shown))
 
     def distances(self, colours: FloatArray) -> FloatArray:
         """Of colours (m, 2) to the nearest training patch: as they are, red and blue exchanged."""
@@ -81,29 +85,36 @@ class ColourRange:
         return np.column_stack([cdist(of, self.colours).min(axis=1) for of in both])
 
     def measures(self, parts: Sequence[ByteImage]) -> FloatArray:
-        """Of an image, by its parts (H, W, 3): `distances`, and how probably it is grey, (3,)."""
+        """Of an image, by its parts (H, W, 3), (8,).
+
+        `distances`, how probably it is grey, and `TurnedChannels.measures`.
+        """
         colours = np.mean([colours_of(part) for part in parts], axis=0)
         grey = 0.0 if self.nearly_grey is None else self.nearly_grey.probability(parts)
-        return np.array([*self.distances(colours[None])[0], grey])
+        turned = np.zeros(len(ORDERS) - 1) if self.turned is None else self.turned.measures(parts)
+        return np.array([*self.distances(colours[None])[0], grey, *turned])
 
     def compared(self, likeness: Likeness, measures: FloatArray) -> Likeness:
-        """A likeness with what `measures` (m, 3) of its images say; few images say nothing."""
+        """A likeness with what `measures` (m, 8) of its images say; few images say nothing."""
         if len(measures) < FEWEST_IMAGES:
             return likeness
-        as_they_are, exchanged, grey = measures.mean(axis=0).tolist()
+        as_they_are, exchanged, grey, *turned = measures.mean(axis=0).tolist()
         is_less = exchanged < EXCHANGED_RATIO * as_they_are
         return replace(
             likeness,
             colour_beyond=as_they_are / self.limit,
             exchanged=is_less and as_they_are - exchanged > EXCHANGED_LEAST,
             grey_beyond=0.0 if self.nearly_grey is None else grey / self.nearly_grey.limit,
+            turned_beyond=max(0.0, *turned),
         )
 
     def arrays(self) -> dict[str, AnyArray]:
         """Everything learned, by name."""
         numbers = np.array([self.limit, self.knows_grey])
-        of_grey = {} if self.nearly_grey is None else self.nearly_grey.arrays()
-        return {"colour_points": self.colours, "colour_numbers": numbers} | of_grey
+        of_signs: dict[str, AnyArray] = {}
+        for sign in (self.nearly_grey, self.turned):
+            of_signs |= {} if sign is None else sign.arrays()
+        return {"colour_points": self.colours, "colour_numbers": numbers} | of_signs
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self | None:
@@ -119,5 +130,5 @@ class ColourRange:
         colours, numbers = arrays["colour_points"], arrays["colour_numbers"]
         if colours.ndim != 2 or colours.shape[1] != 2 or not len(colours) or numbers.shape != (2,):
             raise ValueError(f"colours of shapes {colours.shape}, {numbers.shape}")
-        of_grey = NearlyGrey.from_arrays(arrays)
-        return cls(colours, float(numbers[0]), knows_grey=bool(numbers[1]), nearly_grey=of_grey)
+        signs = NearlyGrey.from_arrays(arrays), TurnedChannels.from_arrays(arrays)
+        return cls(colours, float(numbers[0]), bool(numbers[1]), *signs)

@@ -39,6 +39,9 @@ class Likeness:
     grey_beyond : float
         How probably the images are nearly grey over what runs of training photographs are: see
         `NearlyGrey`. 0 where `colour_beyond` is, and of files before version 0.37.
+    turned_beyond : float
+        The same of channels in another order, in any light: see `TurnedChannels`. 0 where
+        `colour_beyond` is, and of files before version 0.45.
     """
 
     images: int
@@ -51,6 +54,7 @@ class Likeness:
     colour_beyond: float = 0.0
     exchanged: bool = False
     grey_beyond: float = 0.0
+    turned_beyond: float = 0.0
 
     @property
     def is_unlike(self) -> bool | None:
@@ -87,6 +91,14 @@ class Likeness:
 
     @property
     def _of_colours(self) -> str:
+        if self.turned_beyond > 1:
+            return (
+                "red, green and blue of the images seem to be in another order than in training: "
+                "they vary together as the training photographs do with channels exchanged, in "
+                "whatever light (blue first, as OpenCV reads images; planes of chroma exchanged; "
+                "another Bayer pattern; hue that is turned). The model uses colour: all names are "
+                "unknown. Correct the reading of the images"
+            )
         if self.grey_beyond > 1:
             return (
                 "the images are nearly grey: red and blue follow green as in a grey image with a "

@@ -1,15 +1,15 @@
 """Whether the images of a run are nearly grey: grey with a tint, or with hardly any colour."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import cv2
 import numpy as np
-from sklearn.linear_model import LogisticRegression
-from sklearn.preprocessing import StandardScaler
+from scipy.special import expit
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
+from terrain.classification.likeness.altered_odds import AlteredOdds
 from terrain.classification.likeness.chroma import CHROMA_NUMBERS, chroma_of
 from terrain.classification.likeness.run_limits import drawn_runs, rows_of_photographs
 from terrain.classification.neighbours.validation import grouped_folds
@@ -21,7 +21,6 @@ SATURATIONS = (0.1, 0.2, 0.3)
 CHANGES = len(TINTS) + len(SATURATIONS)
 EACH, STEP = 3, 2  # changed copies of a patch, each by the next change but one
 JPEG_QUALITY = 90  # of copies: compression rounds colours
-REGULARITY = 0.1
 FALSE_ALARMS = 0.01  # share of runs over one known terrain beyond the limit
 
 
@@ -32,8 +31,12 @@ def made_grey(patch: ByteImage, change: int) -> ByteImage:
         changed = grey * np.array(TINTS[change])
     else:
         changed = grey + SATURATIONS[change - len(TINTS)] * (patch - grey)
-    coloured = np.clip(np.rint(changed), 0, 255).astype(np.uint8)
-    _, data = cv2.imencode(".jpg", coloured[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return compressed(np.clip(np.rint(changed), 0, 255).astype(np.uint8), JPEG_QUALITY)
+
+
+def compressed(image: ByteImage, quality: int) -> ByteImage:
+    """An image (H, W, 3) as a JPEG of a quality stores it."""
+    _, data = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])
     return np.asarray(cv2.imdecode(data, cv2.IMREAD_COLOR), np.uint8)[..., ::-1]
 
 
@@ -46,18 +49,15 @@ class NearlyGrey:
 
     Attributes
     ----------
-    scales : FloatArray, shape (2, 9)
-        Mean and deviation of the numbers of `chroma_of`.
-    weights : FloatArray, shape (55,)
-        In log-odds: of one, of the numbers in deviations from their mean, and of their products.
+    odds : AlteredOdds
+        By the nine numbers of `chroma_of`.
     limit : float
         Of the mean probability of a run: all but one of a hundred runs of three training
         photographs of one terrain keep it, where each was judged by the others.
     """
 
-    scales: FloatArray
-    weights: FloatArray
-    limit: float = 1.0
+    odds: AlteredOdds
+    limit: float
 
     @classmethod
     def of(cls, patches: Sequence[ByteImage], codes: IntArray, groups: AnyArray) -> Self:
@@ -66,37 +66,21 @@ class NearlyGrey:
         changed = np.array([_copies(patch, i) for i, patch in enumerate(patches)])
         held_out = np.zeros(len(own))
         for train, test in grouped_folds(codes, groups):
-            held_out[test] = cls._learned(own[train], changed[train]).probabilities(own[test])
+            odds = AlteredOdds.learned(own[train, None], changed[train])
+            held_out[test] = expit(odds.of(own[test]))
         photos = rows_of_photographs(codes, groups)
         runs = drawn_runs(photos, np.array([codes[rows[0]] for rows in photos]))
         limit = np.quantile([held_out[run].mean() for run in runs], 1 - FALSE_ALARMS)
-        return replace(cls._learned(own, changed), limit=float(max(limit, 1e-9)))
-
-    @classmethod
-    def _learned(cls, own: FloatArray, changed: FloatArray) -> Self:
-        """Without a limit, from numbers of patches (n, 9) and of their copies (n, EACH, 9)."""
-        rows = np.concatenate([own, changed.reshape(-1, CHROMA_NUMBERS)])
-        is_grey = np.arange(len(rows)) >= len(own)
-        scaler = StandardScaler().fit(rows)
-        shares = np.where(is_grey, 1 / EACH, 1.0)
-        terms = _with_products(scaler.transform(rows))
-        fitted = LogisticRegression(C=REGULARITY, max_iter=3000).fit(terms, is_grey, shares)
-        weights = np.concatenate([fitted.intercept_, fitted.coef_[0]])
-        return cls(np.array([scaler.mean_, scaler.scale_]), weights)
-
-    def probabilities(self, numbers: FloatArray) -> FloatArray:
-        """Of each row of numbers (m, 9), (m,)."""
-        terms = _with_products((numbers - self.scales[0]) / self.scales[1])
-        odds = np.clip(self.weights[0] + terms @ self.weights[1:], -50.0, 50.0)
-        return np.asarray(1 / (1 + np.exp(-odds)))
+        return cls(AlteredOdds.learned(own[:, None], changed), float(max(limit, 1e-9)))
 
     def probability(self, parts: Sequence[ByteImage]) -> float:
         """Of an image, the mean of its parts (H, W, 3)."""
-        return float(self.probabilities(np.array([chroma_of(part) for part in parts])).mean())
+        return float(expit(self.odds.of(np.array([chroma_of(part) for part in parts]))).mean())
 
     def arrays(self) -> dict[str, AnyArray]:
         """Everything learned, by name."""
-        return {"grey_scales": self.scales, "grey_weights": np.array([*self.weights, self.limit])}
+        weights = np.array([*self.odds.weights, self.limit])
+        return {"grey_scales": self.odds.scales, "grey_weights": weights}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self | None:
@@ -110,18 +94,12 @@ class NearlyGrey:
         if "grey_scales" not in arrays:
             return None
         scales, numbers = arrays["grey_scales"], arrays["grey_weights"]
-        fits = scales.shape == (2, CHROMA_NUMBERS)
-        if not fits or numbers.shape != (2 + _with_products(scales).shape[1],):
+        odds = AlteredOdds(scales, numbers[:-1])
+        if not odds.fits(CHROMA_NUMBERS):
             raise ValueError(f"nearly grey images of shapes {scales.shape}, {numbers.shape}")
-        return cls(scales, numbers[:-1], float(numbers[-1]))
+        return cls(odds, float(numbers[-1]))
 
 
 def _copies(patch: ByteImage, number: int) -> list[FloatArray]:
     kinds = [(number + k * STEP) % CHANGES for k in range(EACH)]
     return [chroma_of(made_grey(patch, kind)) for kind in kinds]
-
-
-def _with_products(numbers: FloatArray) -> FloatArray:
-    """Numbers (m, n) and the products of any two of them."""
-    first, second = np.triu_indices(numbers.shape[1])
-    return np.column_stack([numbers, numbers[:, first] * numbers[:, second]])
