@@ -123,6 +123,8 @@ ALTERATIONS = {
     "enlarged to twice": lambda image, _: _enlarged(image),
     "median of 9 px": lambda image, _: cv2.medianBlur(image, 9),
     "red": lambda image, _: _times(image, np.array([0.7, 0.8, 1.4])),
+    "red and blue exchanged": lambda image, _: image[..., ::-1],
+    "channels turned round": lambda image, _: image[..., [1, 2, 0]],
 }
 
 if __name__ == "__main__":

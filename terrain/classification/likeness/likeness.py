@@ -94,10 +94,11 @@ class Likeness:
         if self.turned_beyond > 1:
             return (
                 "red, green and blue of the images seem to be in another order than in training: "
-                "they vary together as the training photographs do with channels exchanged, in "
-                "whatever light (blue first, as OpenCV reads images; planes of chroma exchanged; "
-                "another Bayer pattern; hue that is turned). The model uses colour: all names are "
-                "unknown. Correct the reading of the images"
+                "they vary together as in the training photographs with channels exchanged, "
+                "whatever the light (blue first, as OpenCV reads images; planes of chroma "
+                "exchanged; another Bayer pattern; hue that is turned), or the terrain is of other "
+                "colours than any in training. The model uses colour: all names are unknown. Look "
+                "at the images, and correct how they are read, or train with this terrain"
             )
         if self.grey_beyond > 1:
             return (
