@@ -118,9 +118,9 @@ def main() -> None:
                 found[change] = found.get(change, 0) + judged(model, shown, altered)
         for change, (folder, runs) in found.items():
             cells = [f"{b} -> {a}" for b, a in zip(folder[:3], folder[3:6], strict=True)]
-            cells += [f"{folder[6]} of {folder[7]};"]
+            cells += [f"{folder[6]} of {folder[7]}; runs"]
             cells += [f"{b} -> {a}" for b, a in zip(runs[:3], runs[3:6], strict=True)]
-            print(f"{name}, {change:26s}", ", ".join(cells), f"{runs[6] / max(runs[7], 1):.3f}")
+            print(f"{name}, {change:26s}", ", ".join(cells), f"note {runs[6] / max(runs[7], 1):.3f}")
 
 
 if __name__ == "__main__":
