@@ -120,7 +120,8 @@ def main() -> None:
             cells = [f"{b} -> {a}" for b, a in zip(folder[:3], folder[3:6], strict=True)]
             cells += [f"{folder[6]} of {folder[7]}; runs"]
             cells += [f"{b} -> {a}" for b, a in zip(runs[:3], runs[3:6], strict=True)]
-            print(f"{name}, {change:26s}", ", ".join(cells), f"note {runs[6] / max(runs[7], 1):.3f}")
+            cells += [f"note {runs[6] / max(runs[7], 1):.3f}"]
+            print(f"{name}, {change:26s}", ", ".join(cells))
 
 
 if __name__ == "__main__":
