@@ -80,7 +80,8 @@ class Classification:
         """The answer, ``unknown`` where its name is not right with `TRUSTED` or more.
 
         No name is left where the images together, of which this is one, are far beyond training,
-        or before a model in colour nearly grey or with channels in another order.
+        or before a model in colour nearly grey, or with channels in another order where images of
+        another camera would be like training as well; else these names need `TRUSTED`.
         Nothing is asked where they are like the training photographs, as many right names would be
         lost as wrong ones; but where images of another camera would be like them as well, it is.
 
@@ -93,9 +94,12 @@ class Classification:
         """
         if likeness is None or not likeness.images or self.label == UNKNOWN:
             return self
-        if likeness.grey_beyond > MOST_GREY or likeness.turned_beyond > 1:
-            reason = TURNED if likeness.turned_beyond > 1 else GREYISH  # grey is like any order
+        is_grey, is_turned = likeness.grey_beyond > MOST_GREY, likeness.turned_beyond > 1
+        if is_grey or (is_turned and may_pass_unnoticed(noticed_share)):
+            reason = TURNED if is_turned else GREYISH  # grey is like any order
             return replace(self, label=UNKNOWN, reason=reason)
+        if is_turned:
+            return self._if_trusted(TURNED)
         if not likeness.is_unlike:
             return self._if_trusted(UNNOTICED) if may_pass_unnoticed(noticed_share) else self
         learned = self.probability_right is not None

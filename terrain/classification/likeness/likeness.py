@@ -97,8 +97,9 @@ class Likeness:
                 "they vary together as in the training photographs with channels exchanged, "
                 "whatever the light (blue first, as OpenCV reads images; planes of chroma "
                 "exchanged; another Bayer pattern; hue that is turned), or the terrain is of other "
-                "colours than any in training. The model uses colour: all names are unknown. Look "
-                "at the images, and correct how they are read, or train with this terrain"
+                "colours than any in training. The model uses colour: names that are not surely "
+                "right are unknown. Look at the images, and correct how they are read, or train "
+                "with this terrain"
             )
         if self.grey_beyond > 1:
             return (

@@ -19,8 +19,8 @@ from terrain.classification.likeness.chroma import GRIDS, unclipped
 from terrain.classification.likeness.nearly_grey import compressed
 from terrain.classification.likeness.run_limits import drawn_runs, rows_of_photographs
 from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.photographs.other_light import in_another_white_balance
 from terrain.classification.photographs.trained_on import image_sum
-from terrain.classification.photographs.white_balance import in_another_white_balance
 
 # As in training, then all others. Hue turned by 120 degrees is one of them; by 60 degrees, or with
 # planes of chroma exchanged, it is near to one.

@@ -115,9 +115,13 @@ def test_a_run_is_judged_as_a_folder_and_few_images_say_nothing(model):
     assert model.likeness(few).turned_beyond == 0
 
 
-def test_no_name_of_turned_images_is_left():
-    answer = NAMED.unless_doubtful(replace(LIKE, turned_beyond=1.01))
+def test_no_name_of_turned_images_is_left_where_another_camera_would_pass():
+    turned = replace(LIKE, turned_beyond=1.01)
+    answer = NAMED.unless_doubtful(turned, 0.5)
     assert (answer.label, answer.reason) == (UNKNOWN, TURNED)
+    for probability, label in ((0.71, NAMED.label), (0.69, UNKNOWN)):
+        named = replace(NAMED, probability_right=probability)
+        assert named.unless_doubtful(turned, 0.95).label == label
     assert not ImageLabel(0.0, "", UNKNOWN, reason=TURNED).is_evidence
     assert NAMED.unless_doubtful(replace(LIKE, turned_beyond=1.0)) == NAMED
     both = replace(LIKE, turned_beyond=1.01, grey_beyond=2.0)
