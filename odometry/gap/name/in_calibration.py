@@ -15,6 +15,7 @@ from odometry.gap.prepare.statistic import sure_sum
 from odometry.windows.dense import DenseWindows
 from odometry.windows.dense_noise import Noise, whitening
 
+PARTS = (0.25, 0.5, 0.75, 1.0)  # of what the effect may always be: stamps are late, and uneven
 BEST = 2  # stretches of the calibration runs without which it must still pay
 MORE = 2.0  # times as uneven as there: the calibration runs do not have that
 
@@ -22,7 +23,7 @@ MORE = 2.0  # times as uneven as there: the calibration runs do not have that
 def in_calibration(
     effect: Effect, scenes: Sequence[DenseWindows], calibration: Calibration
 ) -> bool:
-    """Whether an effect that a reference may always have surely pays on the calibration runs.
+    """Whether a part of an effect that a reference may always have surely pays on calibration runs.
 
     Each stretch of these has a base identified on the others. Not where the stamps of the measured
     runs (`scenes`) are off by much more.
@@ -34,12 +35,16 @@ def in_calibration(
     here, there = (max(_uneven_s(added, scene) for scene in of) for of in (scenes, known))
     if here > MORE * there:
         return False
-    gains = [_gains(added, base, scene, calibration.noise) for base, scene in calibration.held_back]
-    return sure_sum(np.concatenate(gains), BEST) > 0
+    return any(_pays(Added(effect, share * added.values), calibration) for share in PARTS)
 
 
 def _uneven_s(added: Added, scene: DenseWindows) -> float:
     return float(np.std(delay_s((added,), scene.pose_s, run_of(scene))))
+
+
+def _pays(added: Added, calibration: Calibration) -> bool:
+    gains = [_gains(added, base, scene, calibration.noise) for base, scene in calibration.held_back]
+    return sure_sum(np.concatenate(gains), BEST) > 0
 
 
 def _gains(added: Added, base: Base, scene: DenseWindows, noise: Noise) -> FloatArray:

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.late_by_chance import LateByChance
 from odometry.gap.config import GapConfig
 from odometry.gap.name.candidates import quick_effects
-from odometry.gap.name.in_calibration import in_calibration
+from odometry.gap.name.in_calibration import _pays, in_calibration
 from odometry.gap.prepare.scenes import scene_of
 
 CONFIG = GapConfig()
@@ -71,3 +72,19 @@ def test_poses_that_were_measured_unevenly_are_not_late(known, make_scene):
 
 def test_other_effects_may_always_be_missing(measured, known_late):
     assert not in_calibration(WheelScale(), [measured], known_late)
+
+
+def half_late(scene, seed=0):
+    """One of two poses, at random, stamped later by chance by about as much as that is uneven."""
+    first = np.arange(0, len(scene.run.pose) - 1, 2)
+    chosen = first + np.random.default_rng(seed).integers(2, size=len(first))
+    run = replace(scene.run, pose=scene.run.pose.rows(chosen))
+    return by_chance(replace(scene, run=run), 0.3, seed)
+
+
+def test_they_are_not_where_half_of_the_unevenness_is_theirs(known, make_scene):
+    """Poses that were measured unevenly and stamped late by chance: stamps show more than that."""
+    kept = tuple((base, half_late(scene)) for base, scene in known.held_back)
+    known = replace(known, held_back=kept)
+    assert not _pays(Added(LATE, np.array(LATE.always)), known)
+    assert in_calibration(LATE, [half_late(make_scene(3, duration_s=60.0))], known)
