@@ -11,7 +11,7 @@ from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_special, is_the_main_part
-from odometry.gap.name.left_by_names import leaves_no_gap, structure_left
+from odometry.gap.name.left_by_names import structure_left, that_last
 from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
@@ -177,12 +177,11 @@ class Standing(Search):
         reason = leaves_noise(
             self.fitter.spread(alone), closed, self.config.left_over, self._most_fitted(names)
         )
-        if reason and leaves_no_gap(self.fitter, alone, self.held_out, self.config):
-            reason = ""
         of_all = self.start.cost - found.fitted.cost
         reason = reason or is_the_main_part(self.start.cost - alone.cost, of_all, self.config)
-        if not reason:
-            return found
+        left = that_last(self, found) if reason else found
+        if left is not None:
+            return left
         for name in names:
             self.refuse(name, reason)
         return grown(self, found)

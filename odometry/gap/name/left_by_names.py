@@ -2,43 +2,70 @@
 
 from collections.abc import Sequence
 
+from odometry.effects.interface.base_model import Base
+from odometry.effects.interface.corrected import Added
+from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.locate.predictors import Predictor, predictors
 from odometry.gap.locate.variables import window_variables
+from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.form import names_alone
+from odometry.gap.name.search import Search
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.gap.prepare.measures import on_runs, other_measures
-from odometry.gap.prepare.statistic import Gap, Measure
+from odometry.gap.prepare.measures import is_shown, on_runs, other_measures
+from odometry.gap.prepare.statistic import Measure
 from odometry.windows.dense import DenseWindows
 
 
 def leaves_no_gap(
     fitter: Fitter, fit: Fitted, held_out: Sequence[DenseWindows], config: GapConfig
 ) -> bool:
-    """Whether names that last bring all errors within their noise floors, on all runs.
+    """Whether names that last leave no gap, on measured or on held-out runs.
 
-    Errors of positions, headings and the gyroscope, on measured and on held-out runs; of positions
-    nearly all of the excess must be theirs. Chi-squared may be above that of noise all the same: a
-    rougher part of a drive is noisier than its calibration, and without a gap is called none.
+    Positions within their noise floor, of which they close nearly all of the excess; headings and
+    the gyroscope not so far above theirs that they would be called a gap. Chi-squared may be above
+    that of noise all the same: a rougher part of a drive is noisier than its calibration, and
+    without a change is called none.
     """
     if any(one.effect.course for one in fit.effects):
         return False
-    known, measured = fitter.calibration, fitter.measured.scenes
-    model = (fit.base, fit.effects)
-    for measure in (Measure.POSITION, *other_measures(measured, held_out, has_yaw=True)):
-        for scenes in (measured, held_out):
-            after, floor = on_runs(known, scenes, config, measure, model)
-            if after.value > floor.high:
-                return False
-            before, _ = on_runs(known, scenes, config, measure)
-            if measure is Measure.POSITION and not _closes(before, after, floor, config):
-                return False
-    return True
+    runs = (fitter.measured.scenes, held_out)
+    return all(_is_within(fitter, fit, scenes, config) for scenes in runs) and not any(
+        is_shown(*on_runs(fitter.calibration, scenes, config, measure, _model(fit)), config)
+        for measure in other_measures(*runs, has_yaw=True)
+        for scenes in runs
+    )
 
 
-def _closes(before: Gap, after: Gap, floor: Gap, config: GapConfig) -> bool:
+def _is_within(
+    fitter: Fitter, fit: Fitted, scenes: Sequence[DenseWindows], config: GapConfig
+) -> bool:
+    """Whether positions are within their floor, and were not before."""
+    known = fitter.calibration
+    before, _ = on_runs(known, scenes, config, Measure.POSITION)
+    after, floor = on_runs(known, scenes, config, Measure.POSITION, _model(fit))
     closed = before.value - after.value
-    return closed > 0 and closed >= config.mostly_closed * (before.value - floor.value)
+    nearly_all = config.mostly_closed * (before.value - floor.value)
+    return after.value <= floor.high and closed > 0 and closed >= nearly_all
+
+
+def _model(fit: Fitted) -> tuple[Base, tuple[Added, ...]]:
+    return fit.base, fit.effects
+
+
+def that_last(search: Search, found: Explanation) -> Explanation | None:
+    """Names that last, where these leave no gap; without those that come and go in time beside.
+
+    None where they leave one. Such names take up what is rougher there than the calibration, and
+    are refused for the rest of it.
+    """
+    names = [effect for effect in found.effects if not isinstance(effect, Residual)]
+    lasting = [effect for effect in names if not effect.course]
+    left = found if len(lasting) == len(names) else search.in_order(found, lasting)
+    alone = names_alone(search.fitter, left)
+    no_gap = lasting and leaves_no_gap(search.fitter, alone, search.held_out, search.config)
+    return left if no_gap else None
 
 
 def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:

@@ -51,11 +51,15 @@ def shown_as_measured(
     A gyroscope that warms up in the first minute is off there, and hardly in the pieces held out.
     """
     for measure in other_measures(measured, held_out, has_yaw=has_yaw):
-        gap, floor = on_runs(known, measured, config, measure)
-        far = gap.value > config.turns_times * floor.value
-        if far and gap.is_surely_above(floor, config.turns_above):
+        if is_shown(*on_runs(known, measured, config, measure), config):
             return measure
     return None
+
+
+def is_shown(gap: Gap, floor: Gap, config: GapConfig) -> bool:
+    """Whether an error of headings or of the gyroscope is far above its floor, and surely so."""
+    far = gap.value > config.turns_times * floor.value
+    return far and gap.is_surely_above(floor, config.turns_above)
 
 
 def other_measures(

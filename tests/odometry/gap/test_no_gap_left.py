@@ -9,15 +9,17 @@ from odometry.effects.commands.wheel_scale import WheelScale
 from odometry.effects.interface.corrected import Added
 from odometry.effects.interface.in_course import in_course
 from odometry.effects.interface.time_course import FromAMoment
+from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter
-from odometry.gap.name import accepted_effects
+from odometry.gap.name import accepted_effects, left_by_names
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.left_by_names import leaves_no_gap
 from odometry.gap.prepare.measured import measured_of
-from odometry.gap.prepare.statistic import floor_of
+from odometry.gap.prepare.measures import on_runs
+from odometry.gap.prepare.statistic import Measure, floor_of
 from odometry.windows.dense_noise import Noise
 
 CONFIG = GapConfig()
@@ -59,13 +61,54 @@ def test_a_name_stands_where_all_errors_are_within_their_floors(calmer, make_sce
     search, found = searched(calmer, make_scene, scaled)
     assert search.fitter.spread(found.fitted) > CONFIG.left_over
     assert search._less_doubtful(found) is found
-    monkeypatch.setattr(accepted_effects, "leaves_no_gap", lambda *_: False)
+    monkeypatch.setattr(left_by_names, "leaves_no_gap", lambda *_: False)
     assert not search._less_doubtful(found).has_name
 
 
 def test_not_where_headings_are_off(calmer, make_scene):
     search, found = searched(calmer, make_scene, turning_less)
     assert not no_gap_left(search, found)
+
+
+def wobbling(columns, twist):
+    """And turns to and fro by a fifth of a degree: headings are off, and positions hardly."""
+    turn_rad_s = 0.005 * np.sin(2 * np.pi * columns["t"] / 4.0)
+    return scaled(columns, twist) + turn_rad_s[:, None] * [0.0, 0.0, 1.0]
+
+
+def test_headings_that_are_no_gap_by_themselves_are_none_beside_a_name(calmer, make_scene):
+    """Above their floor, and by less than what is called a gap where nothing has a name."""
+    search, found = searched(calmer, make_scene, wobbling)
+    model = found.fitted.base, found.fitted.effects
+    scenes = search.fitter.measured.scenes
+    gap, floor = on_runs(calmer, scenes, CONFIG, Measure.HEADING, model)
+    assert floor.high < gap.value < CONFIG.turns_times * floor.value
+    assert no_gap_left(search, found)
+
+
+def with_a_moment(search, found):
+    """And a loss of traction from a moment on beside it."""
+    late = in_course(TractionLoss(), FromAMoment())
+    return search.in_order(found, [*found.effects, late])
+
+
+def test_what_comes_at_a_moment_takes_no_name_with_it(calmer, make_scene, monkeypatch):
+    search, found = searched(calmer, make_scene, scaled)
+    both = with_a_moment(search, found)
+    assert search._less_doubtful(both).names == found.names
+    monkeypatch.setattr(left_by_names, "leaves_no_gap", lambda *_: False)
+    assert not search._less_doubtful(both).has_name
+
+
+def test_where_no_gap_is_left_a_function_beside_a_name_follows_noise(
+    calmer, make_scene, monkeypatch
+):
+    search, found = searched(calmer, make_scene, scaled)
+    monkeypatch.setattr(accepted_effects, "leaves_noise", lambda *_: "")
+    monkeypatch.setattr(accepted_effects, "is_the_main_part", lambda *_: "a function does more")
+    assert search._less_doubtful(found) is found
+    monkeypatch.setattr(left_by_names, "leaves_no_gap", lambda *_: False)
+    assert not search._less_doubtful(found).has_name
 
 
 def test_not_where_it_closed_little(calmer, make_scene):
