@@ -105,7 +105,7 @@ def strong_enough(known: Run, measured: Run) -> dict[str, float]:
     ready = prepared([measured], [known], [], (Icr(), None), CONFIG)
     held, base = ready.scenes[1], ready.known.base
     floor_m = floor_there(ready.floor(), ready.known, held, ready.config).value
-    moved = partial(_moved_m, base, held)
+    moved = partial(moved_m, base, held)
     found = {}
     for name, (usual, most, _) in STRENGTHS.items():
         strength = usual * TIMES * floor_m / moved(MADE[name])
@@ -114,7 +114,8 @@ def strong_enough(known: Run, measured: Run) -> dict[str, float]:
     return found
 
 
-def _moved_m(base: Base, scenes: Sequence[DenseWindows], change: Added) -> float:
+def moved_m(base: Base, scenes: Sequence[DenseWindows], change: Added) -> float:
+    """Root mean square [m] by which a change moves the ends of windows."""
     ends = [
         (residuals(base, (change,), scene) - residuals(base, (), scene))[:, -1, :2]
         for scene in scenes
