@@ -1,6 +1,6 @@
 """Names and notes of a model in colour where a camera is set, or its images are read, wrong.
 
-    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_faults DEAL [DEAL...]
+    TERRAIN_ODOMETRY_DATA=... python -m tests.studies.terrain_faults DEAL [DEAL...] [--only NAME...]
 
 Models of some photographs answer the middle of others (up to four squares), all altered alike:
 lights and `colour_faults`. Deals: ground and pavements (development: thirds of ground/, and of one
