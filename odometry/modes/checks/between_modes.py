@@ -108,26 +108,33 @@ def between_modes(
             holds &= _inside(part, error, config.between_half_sigmas)
         for part in stays:
             holds &= ~_is_a_mode(part)
-        place[holds], share[holds] = row, _share(whole)[0][holds]
+        place[holds], share[holds] = row, share_of(whole)[0][holds]
     names = tuple((modes.names[first], modes.names[second]) for first, second in pairs)
     return BetweenModes(names, place, share)
 
 
 def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, parts: int) -> list[FloatArray]:
     """Sums (5, N) of the normal equations over each part of a window up to each stamp."""
-    known = np.isfinite(off)
-    d, y = np.where(known, apart, 0.0), np.where(known, off, 0.0)
-    columns = np.column_stack([known, d, d * d, y, d * y])
     found = []
+    sums = normal_sums(apart, off, stamps_s, WINDOW_S / max(parts, 1))
     for part in range(parts):
-        sums = windowed(columns, stamps_s, WINDOW_S / parts).T
         ends_s = stamps_s - part * WINDOW_S / parts
         rows = np.searchsorted(stamps_s, ends_s, side="right") - 1
         found.append(np.where(rows >= 0, sums[:, rows], np.nan))
     return found
 
 
-def _share(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
+def normal_sums(
+    inputs: FloatArray, wanted: FloatArray, stamps_s: FloatArray, window_s: float
+) -> FloatArray:
+    """Sums (5, N) of the normal equations of a share of inputs (N,), and a bias, in a window."""
+    known = np.isfinite(wanted)
+    d, y = np.where(known, inputs, 0.0), np.where(known, wanted, 0.0)
+    columns = np.column_stack([known, d, d * d, y, d * y])
+    return windowed(columns, stamps_s, window_s).T
+
+
+def share_of(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Share (N,) and its variance from weighted sums (5, N); NaN: undetermined."""
     count, d, dd, y, dy = sums
     of_bias = count + LEFT_BIAS_RAD_S**-2
@@ -138,12 +145,12 @@ def _share(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _inside(sums: FloatArray, error: float, bound: float) -> BoolArray:
     """Where (N,) the share lies between 0 and 1, farther than errors that stay and that do not."""
-    share, variance = _share(sums)
+    share, variance = share_of(sums)
     margin = bound * np.sqrt(variance + error**2)
     return np.asarray((share - margin > 0) & (share + margin < 1))
 
 
 def _is_a_mode(sums: FloatArray) -> BoolArray:
     """Where (N,) the share is surely that of a mode or beyond."""
-    share, variance = _share(sums)
+    share, variance = share_of(sums)
     return np.asarray(((share <= 0) | (share >= 1)) & (variance < SURE_SHARE**2))

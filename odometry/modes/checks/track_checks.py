@@ -9,6 +9,7 @@ from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.between_modes import between_modes
 from odometry.modes.checks.centre_check import centre_check
 from odometry.modes.checks.gain_check import gain_check
+from odometry.modes.checks.one_bias_check import one_bias_check
 from odometry.modes.checks.place_drift import place_drifts
 from odometry.modes.checks.pose_scatter import pose_scatter
 from odometry.modes.checks.travel_check import travel_check
@@ -60,6 +61,7 @@ def contradictions(
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
     off = turns_are_off(left, before, config)
+    off |= one_bias_check(signals, modes, left.leading, believed[:2], config)
     gains_are_off = turn_gain_check(signals, modes, left.leading, biases_rad_s, config)
     return {
         "alike": similar_modes(signals, modes, left.leading, config),

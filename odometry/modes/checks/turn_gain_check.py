@@ -46,7 +46,7 @@ def turn_gain_check(
     off = np.zeros(len(signals), dtype=np.bool_)
     for mode in np.unique(leading):
         leads, said = leading == mode, predicted[:, mode]
-        more, less = LEAST_WAY * _ways(modes, mode, config.alike_sigmas)
+        more, less = LEAST_WAY * ways_to_next(modes, mode, config.alike_sigmas)
         errors = measured - biases_rad_s - said
         for place, counted in enumerate((errors, np.where(leads, errors, np.nan))):
             clock_s, window_s = turning_clock(said, counted, lasts_s), TURNED_S[place]
@@ -60,7 +60,7 @@ def turn_gain_check(
     return off
 
 
-def _ways(modes: VelocityModes, mode: int, alike_sigmas: float) -> FloatArray:
+def ways_to_next(modes: VelocityModes, mode: int, alike_sigmas: float) -> FloatArray:
     """To the next mode that turns more, and less (2,), as shares; as far as on the other side else.
 
     Modes that are equal in motion are no next ones; infinite where there is none.

@@ -133,7 +133,8 @@ def test_a_terrain_between_two_modes_is_not_named_after_its_turn():
     between = signals_of(GAIN * 1.1, both_sides)
     noise = np.random.default_rng(4).normal(0, 0.02, SIZE)
     between.measured[:, 1] += noise
-    config = ModesConfig(between_sigmas=100.0, turn_sigmas=100.0, long_sigmas=100.0)
+    others = ("between_sigmas", "turn_sigmas", "long_sigmas", "one_bias_sigmas")
+    config = ModesConfig(**dict.fromkeys(others, 100.0))
     found, without = (
         follow_signals(between, set_of(spread), config) for spread in (SPREAD, 10 * SPREAD)
     )

@@ -1,0 +1,61 @@
+"""Whether the robot turns as the most probable velocity mode does, if the gyroscope has one bias.
+
+A robot that turns slowly turns by as much as the bias of its gyroscope may be. A mode that is not
+the true one then explains a left turn by one bias and the next right turn by another, and filters
+follow: at each moment hardly anything is left. Over a minute it is one bias. It is found together
+with the share by which the gain of the mode is off; a turn to one side alone determines no gain.
+"""
+
+import numpy as np
+
+from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.modes.bank_inputs import Signals
+from odometry.modes.checks.between_modes import normal_sums, share_of
+from odometry.modes.checks.turn_gain_check import ways_to_next
+from odometry.modes.identify.held_out_gains import CLIP_RAD_S
+from odometry.modes.modes_config import ModesConfig
+from odometry.modes.velocity import VelocityModes
+
+WINDOW_S = 60.0  # turns to both sides lie in it, and no bias walks far
+TOLERANCE = 0.01  # as a share: no gain is identified better
+# Of the way to the next mode: by less even a mode that is known well differs from drive to drive.
+LEAST_WAY = 0.1
+"""Chosen with `one_bias_sigmas` of `ModesConfig` on robots of any pace (tests/studies/modes.md)."""
+
+
+def one_bias_check(
+    signals: Signals,
+    modes: VelocityModes,
+    leading: IntArray,
+    believed: tuple[FloatArray, float],
+    config: ModesConfig | None = None,
+) -> BoolArray:
+    """Where (N,) the gain of the most probable mode is off, whatever constant bias there is.
+
+    Parameters
+    ----------
+    signals : Signals
+        Measured where it depends on the modes.
+    modes : VelocityModes
+    leading : (N,)
+        The most probable mode: what was measured while another one led says nothing of it.
+    believed : (N,), float
+        Biases of the filters [rad/s], about which the one of a window lies; and the share of a
+        measurement that is news.
+    config : ModesConfig, optional
+    """
+    config = config or ModesConfig()
+    biases_rad_s, independent = believed
+    predicted = modes.yaw_rates_rad_s(signals.stamps_s, signals.tread_speeds_m_s)
+    off = np.zeros(len(signals), dtype=np.bool_)
+    for mode in np.unique(leading):
+        leads, said = leading == mode, predicted[:, mode]
+        more, less = LEAST_WAY * ways_to_next(modes, mode, config.alike_sigmas)
+        errors = np.clip(signals.measured[:, -1] - said, -CLIP_RAD_S, CLIP_RAD_S)
+        sums = normal_sums(said, np.where(leads, errors, np.nan), signals.stamps_s, WINDOW_S)
+        sums[3:] -= sums[:2] * biases_rad_s
+        share, variance = share_of(sums * independent / modes.yaw_rate_variances()[mode])
+        variance = variance + modes.lasting_share()[mode] ** 2 + TOLERANCE**2
+        beyond = np.abs(share) > config.one_bias_sigmas * np.sqrt(variance)
+        off |= leads & beyond & ((share > more) | (share < -less))
+    return off
