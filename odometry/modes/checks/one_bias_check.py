@@ -12,7 +12,6 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.between_modes import normal_sums, share_of
 from odometry.modes.checks.turn_gain_check import ways_to_next
-from odometry.modes.identify.held_out_gains import CLIP_RAD_S
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.velocity import VelocityModes
 
@@ -20,6 +19,7 @@ WINDOW_S = 60.0  # turns to both sides lie in it, and no bias walks far
 TOLERANCE = 0.01  # as a share: no gain is identified better
 # Of the way to the next mode: by less even a mode that is known well differs from drive to drive.
 LEAST_WAY = 0.1
+MOST_SIGMAS = 6.0  # of one error about the bias: a spike is no gain
 """Chosen with `one_bias_sigmas` of `ModesConfig` on robots of any pace (tests/studies/modes.md)."""
 
 
@@ -46,16 +46,19 @@ def one_bias_check(
     """
     config = config or ModesConfig()
     biases_rad_s, independent = believed
+    measured = signals.measured[:, -1]
     predicted = modes.yaw_rates_rad_s(signals.stamps_s, signals.tread_speeds_m_s)
     off = np.zeros(len(signals), dtype=np.bool_)
     for mode in np.unique(leading):
         leads, said = leading == mode, predicted[:, mode]
         more, less = LEAST_WAY * ways_to_next(modes, mode, config.alike_sigmas)
-        errors = np.clip(signals.measured[:, -1] - said, -CLIP_RAD_S, CLIP_RAD_S)
+        variance = modes.yaw_rate_variances()[mode]
+        bound = MOST_SIGMAS * np.sqrt(variance)
+        errors = biases_rad_s + np.clip(measured - said - biases_rad_s, -bound, bound)
         sums = normal_sums(said, np.where(leads, errors, np.nan), signals.stamps_s, WINDOW_S)
         sums[3:] -= sums[:2] * biases_rad_s
-        share, variance = share_of(sums * independent / modes.yaw_rate_variances()[mode])
-        variance = variance + modes.lasting_share()[mode] ** 2 + TOLERANCE**2
-        beyond = np.abs(share) > config.one_bias_sigmas * np.sqrt(variance)
+        share, of_share = share_of(sums * independent / variance)
+        spread = np.sqrt(of_share + modes.lasting_share()[mode] ** 2 + TOLERANCE**2)
+        beyond = np.abs(share) > config.one_bias_sigmas * spread
         off |= leads & beyond & ((share > more) | (share < -less))
     return off
