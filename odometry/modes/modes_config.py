@@ -40,8 +40,8 @@ class ModesConfig:
         (development).
     one_bias_sigmas : float
         By which the gain of a velocity mode may be off over a minute with one bias of the
-        gyroscope: with 1.5 wrong names of slow robots with faults are 1.3 % of the time instead of
-        1.4 (3.2 without the test), and their clean runs lose 0.5 points instead of 0.3
+        gyroscope: with 1.5 wrong names of slow robots with faults are 1.7 % of the time instead of
+        2.1 (4.2 without the test), and their clean runs lose 0.8 points instead of 0.3
         (development).
     travel_sigmas : float
         By which a mode travels another distance than was measured.

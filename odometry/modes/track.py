@@ -123,6 +123,7 @@ def follow_signals(
     open_ = np.zeros(size, dtype=np.bool_)
     if not modes.state_angles:
         open_ = bias_is_open(means[:, -1], readings, config)
+    bias = means[:, -1], sigmas[:, -1]
     return ModeTrack(
         mode_set.names,
         signals.stamps_s,
@@ -132,8 +133,8 @@ def follow_signals(
         squared,
         signals.labels,
         mode_fit(left, mode_set.dwell_s, config.misfit_share),
-        gyroscope_trust(signals, means[:, -1], sigmas[:, -1], open_),
-        **contradictions(replace(signals, measured=measured), mode_set, left, means[:, -1], config),
+        gyroscope_trust(signals, *bias, open_),
+        **contradictions(replace(signals, measured=measured), mode_set, left, bias, config),
         blocked=within(signals.stamps_s, signals.blocked_s),
         config=config,
     )

@@ -134,10 +134,15 @@ def normal_sums(
     return windowed(columns, stamps_s, window_s).T
 
 
-def share_of(sums: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Share (N,) and its variance from weighted sums (5, N); NaN: undetermined."""
+def share_of(
+    sums: FloatArray, bias_sigma_rad_s: FloatArray | float = LEFT_BIAS_RAD_S
+) -> tuple[FloatArray, FloatArray]:
+    """Share (N,) and its variance from weighted sums (5, N); NaN: undetermined.
+
+    The bias lies about 0 by a standard deviation.
+    """
     count, d, dd, y, dy = sums
-    of_bias = count + LEFT_BIAS_RAD_S**-2
+    of_bias = count + np.asarray(bias_sigma_rad_s) ** -2.0
     left = dd - d**2 / of_bias
     left = np.where(left > LEAST_INFORMATION, left, np.nan)
     return (dy - d * y / of_bias) / left, 1 / left

@@ -37,17 +37,19 @@ def contradictions(
     signals: Signals,
     mode_set: ModeSet,
     left: Innovations,
-    biases_rad_s: FloatArray,
+    bias: tuple[FloatArray, FloatArray],
     config: ModesConfig,
 ) -> dict[str, Any]:
     """Fields of `ModeTrack`: what speaks against the most probable mode, as its filters allow.
+
+    `bias` is that of the filters (N,) and its standard deviation (N,).
 
     Of modes that measure velocities: equal modes, turns, travel, turns between two modes and
     headings at odds. Of those that measure poses: turns between two modes, gains and turning
     centres that are off, drifts of places, where one was contradicted not long ago, and how far
     poses scatter.
     """
-    modes = mode_set.modes
+    modes, biases_rad_s = mode_set.modes, bias[0]
     believed = biases_rad_s, left.independent, config
     if not isinstance(modes, VelocityModes):
         return {
@@ -61,7 +63,7 @@ def contradictions(
     predicted = modes.steady_yaw_rates(signals.tread_speeds_m_s)
     before = np.vstack([np.zeros(predicted.shape[1]), predicted[:-1]])
     off = turns_are_off(left, before, config)
-    off |= one_bias_check(signals, modes, left.leading, believed[:2], config)
+    off |= one_bias_check(signals, modes, left.leading, (*bias, left.independent), config)
     gains_are_off = turn_gain_check(signals, modes, left.leading, biases_rad_s, config)
     return {
         "alike": similar_modes(signals, modes, left.leading, config),

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.modes.answers import named_modes
 from odometry.modes.bank_inputs import Signals
-from odometry.modes.checks.one_bias_check import LEAST_WAY, WINDOW_S, one_bias_check
+from odometry.modes.checks.one_bias_check import BEFORE_S, LEAST_WAY, WINDOW_S, one_bias_check
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.track import follow_signals
 from tests.odometry.modes.mode_examples import velocity_set
@@ -34,26 +34,37 @@ def signals_of(gain, sides=SIDES, bias_rad_s=0.0):
     return Signals(STAMPS_S, speeds, measured, np.full(SIZE, "unknown", dtype=object))
 
 
-def checked(signals, mode_set=None, leading=0, biases_rad_s=0.0):
+def checked(signals, mode_set=None, *, leading=0, bias_rad_s=0.0, sigma_rad_s=5e-4):
     modes, rows = (mode_set or set_of()).modes, np.broadcast_to(leading, SIZE)
-    believed = np.broadcast_to(biases_rad_s, SIZE), STEP_S / 0.3
-    return one_bias_check(signals, modes, rows, believed)
+    of_filters = (np.broadcast_to(of, SIZE) for of in (bias_rad_s, sigma_rad_s))
+    return one_bias_check(signals, modes, rows, (*of_filters, STEP_S / 0.3))
 
 
 @pytest.mark.parametrize("share", [-0.12, 0.12])
 def test_a_gain_that_is_off_is_no_bias_that_changes_with_the_turn(share):
     follows = TURN_RAD_S * share * SIDES  # the bias that explains each turn
-    assert checked(signals_of(GAIN + share), biases_rad_s=follows)[BOTH].all()
-    assert not checked(signals_of(GAIN + share / 6), biases_rad_s=follows / 6).any()
+    assert checked(signals_of(GAIN + share), bias_rad_s=follows)[BOTH].all()
+    assert not checked(signals_of(GAIN + share / 6), bias_rad_s=follows / 6).any()
 
 
-def test_turns_to_one_side_may_be_those_of_a_bias():
-    assert not checked(signals_of(GAIN - 0.12, np.ones(SIZE))).any()
+def test_turns_to_one_side_may_be_those_of_a_bias_that_is_not_known():
+    circle = signals_of(GAIN - 0.12, np.ones(SIZE))
+    assert not checked(circle, sigma_rad_s=0.005).any()
+    both = signals_of(GAIN - 0.12)
+    assert checked(both, sigma_rad_s=0.005)[BOTH].all()
+
+
+def test_a_bias_that_was_known_before_does_not_go_away_on_a_circle():
+    circle = signals_of(GAIN - 0.14, np.ones(SIZE))
+    goes = -0.14 * TURN_RAD_S * np.clip((STAMPS_S - 30.0) / 30.0, 0.0, 1.0)
+    off = checked(circle, bias_rad_s=goes)
+    assert off[(STAMPS_S > 40.0) & (STAMPS_S < BEFORE_S + 30.0)].all()
+    assert not off[STAMPS_S > BEFORE_S + 60.0].any()  # what is believed since then
 
 
 def test_a_constant_bias_is_no_gain():
     assert not checked(signals_of(GAIN, bias_rad_s=0.004)).any()
-    assert not checked(signals_of(GAIN, bias_rad_s=0.03), biases_rad_s=0.03).any()
+    assert not checked(signals_of(GAIN, bias_rad_s=0.03), bias_rad_s=0.03).any()
 
 
 def test_what_is_near_the_mode_by_the_way_to_the_next_one_contradicts_nothing():
@@ -86,7 +97,7 @@ def test_spikes_are_no_gain():
     bias = 0.03  # farther from 0 than an error may be
     signals = signals_of(GAIN, bias_rad_s=bias)
     signals.measured[SIDES > 0, -1] += np.where(np.arange(np.sum(SIDES > 0)) % 50 == 0, 40.0, 0.0)
-    assert not checked(signals, biases_rad_s=bias)[BOTH].any()
+    assert not checked(signals, bias_rad_s=bias)[BOTH].any()
 
 
 def test_a_slow_robot_has_no_name_on_a_terrain_beside_the_mode():
