@@ -154,6 +154,8 @@ def ratio_left(factor: float, like: tuple[float, float] = LIKE) -> float:
 
 def _uneven(groups: Groups, target: FloatArray, *columns: FloatArray, most: float) -> str:
     """Two groups of windows whose factors of the first column surely differ by more than `most`."""
+    if not len(target):
+        return ""  # as where no course of positions turns with the treads
     for words, one, other in groups:
         first, second = (_fit(rows, target, *columns) for rows in (one, other))
         if first is None or second is None:
