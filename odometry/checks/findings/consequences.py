@@ -148,8 +148,8 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         }
         | {"track_width", "slip_in_turns", "gyroscope_reversed", "pose_late", "gyroscope_late"}
     ),
-    "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
-    "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed"},
+    "tread_left_reversed": TREADS | YAW | POSES | {"treads_both_reversed", "turn_blocked"},
+    "tread_right_reversed": TREADS | YAW | POSES | {"treads_both_reversed", "turn_blocked"},
     "treads_both_reversed": YAW,
     "clocks_apart": frozenset(
         {"gyroscope_unit", "pose_late", "treads_late", "pose_jumps", "poses_unrelated"}

@@ -26,14 +26,31 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
     known = [s for s in (gyroscope, pose) if s is not Sense.UNKNOWN]
     if not known or all(s is Sense.AGREES for s in known):
         return
-    if flips := turns_flip(evidence):
+    tread = known[0] if set(known) in ({Sense.LEFT_REVERSED}, {Sense.RIGHT_REVERSED}) else None
+    one = None if tread is None else _one_tread(evidence, tread)
+    flips = turns_flip(evidence)
+    if one is not None and (not flips or _flips_no_more(evidence, one)):
+        yield one
+    elif flips:
         if Sense.UNRELATED not in known:  # said with those elsewhere
             yield disagreement(flips)
-        return
-    for tread in (Sense.LEFT_REVERSED, Sense.RIGHT_REVERSED):
-        if set(known) == {tread}:
-            yield _one_tread(evidence, tread)
-            return
+    else:
+        yield from _opposite(evidence, gyroscope, pose)
+
+
+def _flips_no_more(evidence: Evidence, one: Finding) -> bool:
+    """Whether nothing flips once a cause is undone.
+
+    With one tread of the wrong sign turns go with the sum of both columns, whose difference is then
+    the way along: it has the sign of the turns in one part of a drive, and not in another.
+    """
+    assert one.mend is not None  # noqa: S101 - a tread is negated
+    return not turns_flip(Evidence(one.mend(evidence.run), evidence.left_out_s))
+
+
+def _opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Iterator[Finding]:
+    """A sensor that turns against another one, and no tread alone that does."""
+    known = [s for s in (gyroscope, pose) if s is not Sense.UNKNOWN]
     if set(known) == {Sense.OPPOSITE}:
         yield _all_opposite(evidence, gyroscope, pose)
     elif gyroscope is Sense.OPPOSITE and pose is Sense.AGREES:

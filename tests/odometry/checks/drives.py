@@ -123,3 +123,11 @@ def starts_and_stops(delay_s, hz, sigma_m, seed=0):
     noise = rng.normal(scale=sigma_m, size=(2, len(run.pose)))
     moved = put(run, "pose", x=run.pose["x"] + noise[0], y=run.pose["y"] + noise[1])
     return without_yaw(put(moved, "pose", t=moved.pose["t"] + delay_s))
+
+
+def shunting(seed=0):
+    """Stretches of four seconds: at rest, backwards, slow and fast, with turns of any size."""
+    rng = np.random.default_rng(seed)
+    speeds = rng.choice([0.0, -0.5, 0.6, 0.9], 40, p=[0.2, 0.1, 0.4, 0.3])
+    turns, ramp = rng.uniform(-0.5, 0.5, 40), np.ones(20) / 20
+    return drive(*(np.convolve(np.repeat(v, 80), ramp, "same") for v in (speeds, turns)), seed=seed)
