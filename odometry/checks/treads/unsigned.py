@@ -8,9 +8,11 @@ from odometry.arrays import BoolArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.treads.reversals import reversals
 from odometry.checks.treads.treads import is_coarse
 
 LEAST_WINDOWS = 6
+LEAST_REVERSALS = 3
 ORDINARY = (0.5, 1.5)  # metres moved for each of tread travel; else the unit is another one
 MOVING = 0.1  # share of the fastest speed
 EQUAL = 0.15  # difference of two sides, as a share of their sum, that turns a robot little
@@ -33,7 +35,7 @@ def unsigned(evidence: Evidence) -> Iterator[Finding]:
     """Speeds that are never negative though the robot spins on the spot or drives backwards.
 
     Where both sides read about the same, the robot hardly turns: it turns as if one side
-    ran backwards. Where both are positive, measured positions go backwards.
+    ran backwards. Where both are positive, measured positions go backwards, or turn back at once.
     """
     metres = evidence.metres_per_metre
     other_unit = metres is not None and not ORDINARY[0] < metres < ORDINARY[1]
@@ -45,6 +47,9 @@ def unsigned(evidence: Evidence) -> Iterator[Finding]:
         seen.append(f"the robot turns on the spot in {spins} windows with equal speeds")
     if backwards >= LEAST_WINDOWS:
         seen.append(f"positions go backwards in {backwards} windows")
+    turned_back = 0 if seen else reversals(evidence)
+    if turned_back >= LEAST_REVERSALS:
+        seen.append(f"positions turn back {turned_back} times faster than the treads can turn it")
     either, others = "Tread", ""
     if same > HALF * spins:
         either = "Either tread"

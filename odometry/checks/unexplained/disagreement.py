@@ -20,6 +20,7 @@ from odometry.checks.treads.tread_samples import peaks_often
 from odometry.checks.turns.constancy import uneven_map, uneven_yaw
 from odometry.checks.turns.turns_in_parts import turns_flip
 from odometry.checks.unexplained.beyond_slip import beyond_slip
+from odometry.checks.unexplained.exchanged_paths import exchanged_in_part
 from odometry.checks.unexplained.little_explained import little_explained
 from odometry.checks.unexplained.moments_of_spin import moments_of_spin
 from odometry.checks.unexplained.position_differences import (
@@ -62,6 +63,7 @@ def lasting_disagreements(evidence: Evidence) -> list[str]:
         yaw_wanders(evidence) or course_drifts(evidence) or course_apart(evidence),
         positions_apart_everywhere(evidence),
         paths_apart(evidence),
+        exchanged_in_part(evidence),
         one_side_not_proportional(evidence),
         holds_the_mean(evidence),
         side_changes(evidence),

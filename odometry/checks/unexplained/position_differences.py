@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
 from odometry.checks.poses.steps import reckoned, without_window_changes
@@ -142,10 +142,7 @@ def _likeness(
     With a gyroscope that turn is the same in the next span.
     """
     of = evidence.integrals
-    begin_s = max(stamps_s[0], evidence.stamps_s[0])
-    at_s = np.arange(begin_s, min(stamps_s[-1], evidence.stamps_s[-1]), STEP_S)
-    x, y = (np.interp(at_s, stamps_s, column) for column in positions.T)
-    measured = x + 1j * y
+    at_s, measured = _even(evidence, stamps_s, positions)
     if evidence.yaw_rate is not None:
         fits = _fits(evidence, at_s, measured, of.gyroscope_rad(at_s))
         pairs = fits[1:] * fits[:-1].conj()
@@ -154,6 +151,40 @@ def _likeness(
     turns = [difference_m / width_m for width_m in _widths_m(evidence)]
     found = (_median(np.abs(_fits(evidence, at_s, measured, turn))) for turn in turns)
     return max(found), ALIKE_BY_TREADS
+
+
+def path_likenesses(evidence: Evidence) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Similarities (K,) of spans to the treads as read and exchanged, and begins (K,) [s].
+
+    NaN where one is not known; none without poses.
+    """
+    pose, used = evidence.run.pose, evidence.poses_used
+    if pose is None or used is None or used.sum() < 2:
+        return np.empty(0), np.empty(0), np.empty(0)
+    at_s, measured = _even(evidence, pose.stamps_s[used], pose.stack("x", "y")[used])
+    turned_m = evidence.integrals.right_m(at_s) - evidence.integrals.left_m(at_s)
+    widths_m = [width * evidence.run.robot.track_width for width in WIDTHS]
+    as_read, exchanged = (
+        np.max([np.abs(_fits(evidence, at_s, measured, of / w)) for w in widths_m], axis=0)
+        for of in (turned_m, -turned_m)
+    )
+    return as_read, exchanged, at_s[_begins(at_s)]
+
+
+def _even(
+    evidence: Evidence, stamps_s: FloatArray, positions: FloatArray
+) -> tuple[FloatArray, ComplexArray]:
+    """Even stamps (L,), and the positions there as complex numbers."""
+    begin_s = max(stamps_s[0], evidence.stamps_s[0])
+    at_s = np.arange(begin_s, min(stamps_s[-1], evidence.stamps_s[-1]), STEP_S)
+    x, y = (np.interp(at_s, stamps_s, column) for column in positions.T)
+    return at_s, x + 1j * y
+
+
+def _begins(at_s: FloatArray) -> IntArray:
+    """First rows (K,) of spans of which each overlaps the next by half."""
+    count = round(PATH_SPAN_S / STEP_S)
+    return np.arange(0, len(at_s) - count, count // 2)
 
 
 def _widths_m(evidence: Evidence) -> list[float]:
@@ -183,7 +214,7 @@ def _fits(
     middle = (yaw_rad[1:] + yaw_rad[:-1]) / 2
     unknown = np.isnan(middle)
     reckoned = np.append(0.0, np.cumsum(steps_m * np.exp(1j * np.nan_to_num(middle))))
-    first = np.arange(0, len(at_s) - count, count // 2)
+    first = _begins(at_s)
     left_out = evidence.left_out(at_s[first], at_s[first + count - 1])
     noise_m = TIMES_NOISE * evidence.position_sigma_m * np.sqrt(count)
     fits = np.full(len(first), np.nan, dtype=np.complex128)
