@@ -2,19 +2,38 @@
 
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import treads_times
-from odometry.checks.findings.unit_tables import ORDINARY_FORWARD, of_wheels
+from odometry.checks.findings.unit_tables import ORDINARY_FORWARD, RADII_M, of_wheels
+
+OF_RADIUS = (0.7, 1.15)  # metres moved for each radian, over the stated radius: slip shortens it
+ON_ICE = 0.24  # metres moved for each metre of the treads, of real robots at least
 
 
-def slip_along(seen: str, tight: bool) -> Finding:
+def slip_along(seen: str, forward: float, tight: bool, radius_m: float | None) -> Finding:
     """A factor below 1, that slip explains as well."""
+    slip = "eavy slip (ice, snow, a robot that is stuck) where terrain allows it, "
+    scale = "wrong scale of treads (a unit, a wheel radius) or positions"
+    wheel_m = _wheel_of_a_rate(forward, radius_m)
+    cause, remedy = f"H{slip}else a {scale}", ""
+    if wheel_m is not None:
+        cause = f"Tread speeds are in rad/s, of wheels of {wheel_m:.3g} m radius; or h{slip}or a "
+        cause += scale
+        remedy = "See whether v_left and v_right are in m/s: wheel rate times radius. "
     return Finding(
         "slip",
         Level.WARNING,
         f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
-        "Heavy slip (ice, snow, a robot that is stuck) where terrain allows it, else a wrong "
-        "scale of treads (a unit, a wheel radius) or positions: these cannot be distinguished",
-        "Where it truly slipped nothing can be corrected; what is learned holds on it alone",
+        f"{cause}: these cannot be distinguished",
+        f"{remedy}Where it truly slipped nothing can be corrected; what is learned holds on it "
+        "alone",
     )
+
+
+def _wheel_of_a_rate(forward: float, radius_m: float | None) -> float | None:
+    """The radius of wheels whose rates would be taken for speeds; None where it is an odd one."""
+    if radius_m is not None:
+        return radius_m if OF_RADIUS[0] < forward / radius_m < OF_RADIUS[1] else None
+    wheel_m = forward / ORDINARY_FORWARD
+    return wheel_m if RADII_M[0] < wheel_m and forward < ON_ICE else None
 
 
 def farther_along(seen: str) -> Finding:

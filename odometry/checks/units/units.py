@@ -218,7 +218,8 @@ def _unit_or_slip(
     if not tight and width is not None and WIDTH[0] <= width < SLIPPERY_WIDTH:
         return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
-        return farther_along(seen) if forward > 1 else slip_along(seen, tight)
+        radius_m = evidence.run.robot.wheel_radius
+        return farther_along(seen) if forward > 1 else slip_along(seen, forward, tight, radius_m)
     return scale_along(seen, forward, radius_known)
 
 
