@@ -33,6 +33,7 @@ from odometry.checks.poses.yaw_drift import yaw_drifts
 from odometry.checks.settings.settings import columns, settings
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
 from odometry.checks.stamps.bursts import spread_bursts
+from odometry.checks.stamps.empty_cells import empty_cells
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.gaps import gaps
 from odometry.checks.stamps.held_treads import held_treads
@@ -107,6 +108,7 @@ CHECKS: tuple[Check, ...] = (
     headings_wander,
     gyroscope_scale,
     pose_outages,
+    empty_cells,
     attitude,
     settings,
     columns,

@@ -13,6 +13,7 @@ CATALOGUE: dict[str, str] = {
     "repeated_stamps": "rows that repeat a stamp were dropped",
     "epoch_stamps": "stamps count from 1970",
     "uneven_stamps": "stamps of arrival, in bursts",
+    "empty_cells": "rows without a value, in columns that others have",
     "odometry_gap": "rows of odometry.csv are lost",
     "clock_set": "a clock that was set while recording",
     "track_width": "track width far from the width that turns imply",
