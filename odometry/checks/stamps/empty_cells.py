@@ -46,8 +46,8 @@ def _of_table(
         "empty_cells",
         Level.NOTE,
         f"{file} has no {', '.join(some)} in {rows.sum()} of {len(t)} rows "
-        f"({100 * rows.mean():.2g} %), in {counted(len(spans), 'place')}, the longest from {first_s:.1f} to "
-        f"{end_s:.1f} s of run time",
+        f"({100 * rows.mean():.2g} %), in {counted(len(spans), 'place')}, the longest from "
+        f"{first_s:.1f} to {end_s:.1f} s of run time",
         "Cells are empty or nan: a sensor or its driver was silent",
         "Nothing to do where that is known: these rows are left out",
         spans,
