@@ -10,7 +10,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.statistics.measured_between import gaps_between
-from odometry.checks.statistics.outliers import pose_outliers, without_spikes
+from odometry.checks.statistics.outliers import excursions, pose_outliers, without_spikes
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
 from odometry.windows.spans import touched
@@ -110,7 +110,9 @@ class CleanedRecording:
             return np.zeros(0, dtype=np.bool_)
         found = np.zeros(len(self.positions_measured), dtype=np.bool_)
         rows = np.flatnonzero(self.positions_measured)
-        found[rows[pose_outliers(self.run.pose.stack("x", "y")[rows])]] = True
+        positions = self.run.pose.stack("x", "y")[rows]
+        away = excursions(self.run.pose.stamps_s[rows], positions)
+        found[rows[pose_outliers(positions) | away]] = True
         return found
 
     @cached_property

@@ -61,7 +61,8 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
     if not len(found):
         return
     measured = np.flatnonzero(evidence.positions_measured)
-    beside = measured[np.clip(np.searchsorted(measured, found) - 3, 0, None)]
+    others = np.flatnonzero(evidence.positions_measured & ~evidence.pose_outliers)
+    beside = others[np.clip(np.searchsorted(others, found) - 3, 0, None)]
     away = np.hypot(*(pose.stack("x", "y")[found] - pose.stack("x", "y")[beside]).T)
     share = len(found) / len(measured)
     usual_s = float(np.median(np.diff(pose.stamps_s)))

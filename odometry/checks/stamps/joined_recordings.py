@@ -62,7 +62,8 @@ def _steps_at_rest(evidence: Evidence) -> Iterator[tuple[float, float]]:
     """Run time [s] of the poses before and after each step."""
     if evidence.run.pose is None or evidence.positions_measured is None:
         return
-    pose = evidence.run.pose.rows(np.flatnonzero(evidence.positions_measured))
+    kept = evidence.positions_measured & ~evidence.pose_outliers
+    pose = evidence.run.pose.rows(np.flatnonzero(kept))
     positions, stamps_s = pose.stack("x", "y"), pose.stamps_s
     far_m = np.hypot(*np.diff(positions, axis=0).T)
     scale = max(evidence.metres_per_metre or 1.0, 1.0)

@@ -1,5 +1,7 @@
 """Single samples and poses that a robot cannot have driven: outliers that come back at once."""
 
+import itertools
+
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
@@ -14,6 +16,8 @@ MOST_FAR = 0.1  # share of the samples
 REACH = 5  # poses to each side whose median is compared
 LEAST_M = 0.5
 TIMES = 8.0  # the usual distance from that median
+# Of positions that go out by one step and come back by another: seconds, and what both leave of it.
+EXCURSION_S, LEFT, LEAST_STEP_M = 5.0, 0.3, 1.0
 
 
 def spikes(values: FloatArray) -> BoolArray:
@@ -103,6 +107,26 @@ def pose_outliers(positions: FloatArray) -> BoolArray:
     for begin, end in zip(begins, ends, strict=True):
         short = end - begin <= LONGEST
         found[begin:end] = short and _comes_back(positions, away, int(begin), int(end))
+    return found
+
+
+def excursions(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
+    """Which positions (M, 2) lie between a large step and one that takes it back in some seconds.
+
+    The reference was elsewhere for a while, as by another fix; the robot was not.
+    """
+    found = np.zeros(len(positions), dtype=np.bool_)
+    if len(positions) < 2 * REACH + 1:
+        return found
+    steps = np.diff(positions, axis=0)
+    sizes = np.hypot(*steps.T)
+    ordinary = float(np.quantile(sizes, 0.9))
+    far = np.flatnonzero(sizes > max(TIMES * ordinary, LEAST_STEP_M * _unit(ordinary)))
+    for out, back in itertools.pairwise(far.tolist()):
+        left = float(np.hypot(*(steps[out] + steps[back])))
+        soon = stamps_s[back] - stamps_s[out] < EXCURSION_S
+        if soon and not found[out] and left < LEFT * min(sizes[out], sizes[back]):
+            found[out + 1 : back + 1] = True
     return found
 
 
