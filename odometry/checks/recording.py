@@ -42,6 +42,7 @@ from odometry.checks.stamps.interleaved import interleaved
 from odometry.checks.stamps.joined_recordings import joined_recordings, without_seams
 from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
+from odometry.checks.stamps.silent_rows import silent_rows
 from odometry.checks.stamps.stamp_pace import stamp_pace
 from odometry.checks.stamps.stamps import stamps, unreadable_stamps
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
@@ -101,6 +102,7 @@ CHECKS: tuple[Check, ...] = (
     treads,
     smoothed_treads,
     gaps,
+    silent_rows,
     stepping_clocks,
     clock_offsets,
     explained_lags,
