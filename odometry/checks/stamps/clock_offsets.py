@@ -57,7 +57,7 @@ def clock_offsets(evidence: Evidence) -> Iterator[Finding]:
 
         found = _offset(stamps_s, pose_s, driven_m, moved_m)
         if found is not None:
-            yield _finding("pose", "pose_late", "the speed between positions", found)
+            yield _finding("pose_late", "pose", "the speed between positions", found)
     rate = evidence.yaw_rate
     if rate is not None and evidence.gyroscope_file == "imu.csv":
 
@@ -66,7 +66,7 @@ def clock_offsets(evidence: Evidence) -> Iterator[Finding]:
 
         found = _offset(stamps_s, rate[0], turned_m, over(of.gyroscope_rad))
         if found is not None:
-            yield _finding("imu", "gyroscope_late", "the yaw rate", found)
+            yield _finding("gyroscope_late", "imu", "the yaw rate", found)
 
 
 def _offset(
@@ -100,7 +100,7 @@ def _correlation(one: FloatArray, other: FloatArray) -> float:
     return float(np.corrcoef(one[known], other[known])[0, 1])
 
 
-def _finding(table: str, name: str, signal: str, offset: Offset) -> Finding:
+def _finding(name: str, table: str, signal: str, offset: Offset) -> Finding:
     file, ahead_s = f"{table}.csv", offset.seconds
     size_s = abs(ahead_s)
     ahead, behind = (file, "odometry.csv") if ahead_s > 0 else ("odometry.csv", file)

@@ -8,7 +8,7 @@ OF_RADIUS = (0.7, 1.15)  # metres moved for each radian, over the stated radius:
 ON_ICE = 0.24  # metres moved for each metre of the treads, of real robots at least
 
 
-def slip_along(seen: str, forward: float, tight: bool, radius_m: float | None) -> Finding:
+def slip_along(seen: str, forward: float, *, tight: bool, radius_m: float | None) -> Finding:
     """A factor below 1, that slip explains as well."""
     slip = "eavy slip (ice, snow, a robot that is stuck) where terrain allows it, "
     scale = "wrong scale of treads (a unit, a wheel radius) or positions"

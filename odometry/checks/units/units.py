@@ -219,7 +219,8 @@ def _unit_or_slip(
         return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
         radius_m = evidence.run.robot.wheel_radius
-        return farther_along(seen) if forward > 1 else slip_along(seen, forward, tight, radius_m)
+        slips = slip_along(seen, forward, tight=tight, radius_m=radius_m)
+        return farther_along(seen) if forward > 1 else slips
     return scale_along(seen, forward, radius_known)
 
 
