@@ -16,7 +16,6 @@ from odometry.checks.findings.undo import (
 )
 from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.turns.turns_in_parts import turns_flip
-from odometry.checks.unexplained.exchanged_paths import exchanged_in_part
 
 LEAST_FORWARDS = 0.5  # how clearly treads say which way is forwards
 
@@ -29,7 +28,7 @@ def turning(evidence: Evidence) -> Iterator[Finding]:
         return
     tread = known[0] if set(known) in ({Sense.LEFT_REVERSED}, {Sense.RIGHT_REVERSED}) else None
     one = None if tread is None else _one_tread(evidence, tread)
-    flips = turns_flip(evidence) or exchanged_in_part(evidence)
+    flips = turns_flip(evidence)
     if one is not None and (not flips or _flips_no_more(evidence, one)):
         yield one
     elif flips:
