@@ -6,15 +6,26 @@ from odometry.checks.findings.unit_tables import ORDINARY_FORWARD, RADII_M, of_w
 
 OF_RADIUS = (0.7, 1.15)  # metres moved for each radian, over the stated radius: slip shortens it
 ON_ICE = 0.24  # metres moved for each metre of the treads, of real robots at least
+OPPOSED = 0.6  # of the way of the treads: a robot that turns on the spot for so long goes nowhere
 
 
-def slip_along(seen: str, forward: float, *, tight: bool, radius_m: float | None) -> Finding:
-    """A factor below 1, that slip explains as well."""
+def slip_along(
+    seen: str, forward: float, *, tight: bool, radius_m: float | None, opposed: float
+) -> Finding:
+    """A factor below 1, that slip explains as well.
+
+    `opposed` is the share of the way on which the treads run against each other.
+    """
     slip = "eavy slip (ice, snow, a robot that is stuck) where terrain allows it, "
     scale = "wrong scale of treads (a unit, a wheel radius) or positions"
     wheel_m = _wheel_of_a_rate(forward, radius_m)
     cause, remedy = f"H{slip}else a {scale}", ""
-    if wheel_m is not None:
+    if opposed > OPPOSED:
+        share = f"{100 * opposed:.0f} % of the way"
+        cause = f"One tread has the wrong sign (they run against each other on {share}); or "
+        cause += f"h{slip}or a {scale}"
+        remedy = "See whether both tread speeds are above zero on a straight. "
+    elif wheel_m is not None:
         cause = f"Tread speeds are in rad/s, of wheels of {wheel_m:.3g} m radius; or h{slip}or a "
         cause += scale
         remedy = "See whether v_left and v_right are in m/s: wheel rate times radius. "

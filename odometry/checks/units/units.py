@@ -218,10 +218,18 @@ def _unit_or_slip(
     if not tight and width is not None and WIDTH[0] <= width < SLIPPERY_WIDTH:
         return disagreement(f"{seen}: slip along the way widens turns, too")
     if not tight or (forward < FORWARD[0] and width is not None and width > ORDINARY_WIDTH):
-        radius_m = evidence.run.robot.wheel_radius
-        slips = slip_along(seen, forward, tight=tight, radius_m=radius_m)
+        opposed, radius_m = _opposed_share(evidence), evidence.run.robot.wheel_radius
+        slips = slip_along(seen, forward, tight=tight, radius_m=radius_m, opposed=opposed)
         return farther_along(seen) if forward > 1 else slips
     return scale_along(seen, forward, radius_known)
+
+
+def _opposed_share(evidence: Evidence) -> float:
+    """Of the way of the treads, the share on which they run against each other."""
+    speeds_m_s = evidence.speeds_m_s
+    ways = np.abs(speeds_m_s).sum(axis=1)
+    against = speeds_m_s.prod(axis=1) < 0
+    return float(ways[against].sum() / max(ways.sum(), 1e-9))
 
 
 def _are_whole(evidence: Evidence) -> bool:

@@ -6,7 +6,7 @@ import pytest
 
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.drives import shunting
-from tests.odometry.checks.faulty import treads, without_yaw
+from tests.odometry.checks.faulty import treads, without_gyroscope, without_yaw
 
 RADIUS_M = 0.165
 
@@ -31,3 +31,11 @@ def test_rad_per_second_comes_first(radius_m):
 def test_slip_comes_first_where_no_wheel_makes_the_factor(radius_m, factor):
     """On ice real robots moved 0.24 to 0.4 m for each metre."""
     assert said(radius_m, factor).startswith("Heavy slip")
+
+
+@pytest.mark.parametrize("seed", [1, 3, 8])
+def test_a_tread_of_the_wrong_sign_is_among_the_causes(seed):
+    run = without_gyroscope(without_yaw(shunting(seed)))
+    found = check_recording(treads(run, lambda left, right: (left, -right)))
+    (cause,) = (f.cause for f in found.findings if f.name == "slip")
+    assert cause.startswith("One tread has the wrong sign (they run against each other on ")
