@@ -97,7 +97,7 @@ def test_degrees_that_are_longer_in_the_north_are_still_degrees(metres, words):
 
 
 def test_no_slip_makes_a_robot_go_farther_than_its_treads():
-    assert slip_along("seen", 0.5, tight=False, radius_m=None).name == "slip"
+    assert slip_along("seen", 0.5, tight=False, radius_m=None, opposed=0.0).name == "slip"
     farther = farther_along("seen")
     assert farther.name == "scale"
     assert "far from the centre" in farther.cause
