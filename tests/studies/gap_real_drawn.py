@@ -10,9 +10,7 @@ each recording and drives on grass, by one another; each as it is as well.
 """
 
 import argparse
-import csv
 import os
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise, permutations
@@ -31,10 +29,10 @@ from odometry.gap.prepare.prepared import prepared
 from odometry.gap.prepare.statistic import floor_there
 from odometry.models.icr import Icr
 from odometry.run import Run
-from tests.studies.gap_real import COLUMNS, CONFIG, study
+from tests.studies.gap_real import CONFIG
 from tests.studies.gap_real_cases import Case, late, recordings, renamed
-from tests.studies.gap_real_changes import TWICE, lagging, score_of, turned
-from tests.studies.gap_real_strong import moved_m
+from tests.studies.gap_real_changes import lagging, turned
+from tests.studies.gap_real_strong import count, moved_m
 
 TIMES = (2.2, 4.0)  # the noise floor
 GRASS = "warthog_grass"
@@ -60,20 +58,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", default=[""], help="words in the name of cases")
     arguments = parser.parse_args()
     runs = recordings(Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion")
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    scores: Counter[str] = Counter()
-    with (arguments.out / "drawn.csv").open("w", newline="", encoding="utf-8") as stream:
-        sheet = csv.DictWriter(stream, COLUMNS)
-        sheet.writeheader()
-        for case in cases(runs, arguments.seed):
-            if any(word in case.name for word in arguments.only):
-                row = study(case, arguments.out)
-                sheet.writerow(row)
-                stream.flush()
-                print(*(f"{name}={text}" for name, text in row.items() if text), sep="  ")
-                if row["ratio"] and float(row["ratio"]) >= TWICE:
-                    scores[score_of(row, {})] += 1
-    print(f"at {TWICE:g} times the floor: {dict(scores)} of {scores.total()}")
+    count(cases(runs, arguments.seed), arguments.only, arguments.out)
 
 
 def cases(runs: Mapping[str, Run], seed: int) -> Iterator[Case]:

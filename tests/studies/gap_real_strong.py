@@ -6,7 +6,7 @@
 Pairs are the halves of each recording, both ways round, and two sequences of one drive. The change
 of the measured one is as strong as it takes, where that is no more than MOST. Recordings of
 HELD_OUT are measured with --held-out alone, and calibrate nothing without it. Every case is a row
-of FOLDER/strong.csv, written as soon as it is known.
+of FOLDER/cases.csv, written as soon as it is known.
 """
 
 import argparse
@@ -57,19 +57,26 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", default=[""], help="words in the name of cases")
     arguments = parser.parse_args()
     runs = recordings(Path(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion")
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    every = cases(runs, held_out=arguments.held_out)
+    count(every, arguments.only, arguments.out)
+
+
+def count(every: Iterator[Case], only: Sequence[str], out: Path) -> None:
+    """Run the cases that are asked for, write a row for each, and print the scores."""
+    out.mkdir(parents=True, exist_ok=True)
     scores: Counter[str] = Counter()
-    with (arguments.out / "strong.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (out / "cases.csv").open("w", newline="", encoding="utf-8") as stream:
         sheet = csv.DictWriter(stream, COLUMNS)
         sheet.writeheader()
-        for case in cases(runs, held_out=arguments.held_out):
-            if any(word in case.name for word in arguments.only):
-                row = study(case, arguments.out)
-                sheet.writerow(row)
-                stream.flush()
-                print(*(f"{name}={text}" for name, text in row.items() if text), sep="  ")
-                if row["ratio"] and float(row["ratio"]) >= TWICE:
-                    scores[score_of(row, {})] += 1
+        for case in every:
+            if not any(word in case.name for word in only):
+                continue
+            row = study(case, out)
+            sheet.writerow(row)
+            stream.flush()
+            print(*(f"{name}={text}" for name, text in row.items() if text), sep="  ")
+            if row["ratio"] and float(row["ratio"]) >= TWICE:
+                scores[score_of(row, {})] += 1
     print(f"at {TWICE:g} times the floor: {dict(scores)} of {scores.total()}")
 
 

@@ -44,8 +44,8 @@ def _flips_no_more(evidence: Evidence, one: Finding) -> bool:
     With one tread of the wrong sign turns go with the sum of both columns, whose difference is then
     the way along: it has the sign of the turns in one part of a drive, and not in another.
     """
-    assert one.mend is not None  # noqa: S101 - a tread is negated
-    return not turns_flip(Evidence(one.mend(evidence.run), evidence.left_out_s))
+    mend = one.mend
+    return mend is not None and not turns_flip(Evidence(mend(evidence.run), evidence.left_out_s))
 
 
 def _opposite(evidence: Evidence, gyroscope: Sense, pose: Sense) -> Iterator[Finding]:

@@ -16,24 +16,22 @@ def slip_along(
 
     `opposed` is the share of the way on which the treads run against each other.
     """
-    slip = "eavy slip (ice, snow, a robot that is stuck) where terrain allows it, "
-    scale = "wrong scale of treads (a unit, a wheel radius) or positions"
     wheel_m = _wheel_of_a_rate(forward, radius_m)
-    cause, remedy = f"H{slip}else a {scale}", ""
+    slip = "heavy slip (ice, snow, a robot that is stuck) where terrain allows it"
+    cause, remedy = slip.capitalize(), ""
     if opposed > OPPOSED:
         share = f"{100 * opposed:.0f} % of the way"
-        cause = f"One tread has the wrong sign (they run against each other on {share}); or "
-        cause += f"h{slip}or a {scale}"
+        cause = f"One tread has the wrong sign (they run against each other on {share}); or {slip}"
         remedy = "See whether both tread speeds are above zero on a straight. "
     elif wheel_m is not None:
-        cause = f"Tread speeds are in rad/s, of wheels of {wheel_m:.3g} m radius; or h{slip}or a "
-        cause += scale
+        cause = f"Tread speeds are in rad/s, of wheels of {wheel_m:.3g} m radius; or {slip}"
         remedy = "See whether v_left and v_right are in m/s: wheel rate times radius. "
     return Finding(
         "slip",
         Level.WARNING,
         f"{seen}; the factor is {'constant' if tight else 'not known to be constant'}",
-        f"{cause}: these cannot be distinguished",
+        f"{cause}, else a wrong scale of treads (a unit, a wheel radius) or positions: these "
+        "cannot be distinguished",
         f"{remedy}Where it truly slipped nothing can be corrected; what is learned holds on it "
         "alone",
     )

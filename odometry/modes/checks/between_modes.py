@@ -115,8 +115,10 @@ def between_modes(
 
 def _sums(apart: FloatArray, off: FloatArray, stamps_s: FloatArray, parts: int) -> list[FloatArray]:
     """Sums (5, N) of the normal equations over each part of a window up to each stamp."""
+    if not parts:  # a stay is longer than the window
+        return []
     found = []
-    sums = normal_sums(apart, off, stamps_s, WINDOW_S / max(parts, 1))
+    sums = normal_sums(apart, off, stamps_s, WINDOW_S / parts)
     for part in range(parts):
         ends_s = stamps_s - part * WINDOW_S / parts
         rows = np.searchsorted(stamps_s, ends_s, side="right") - 1

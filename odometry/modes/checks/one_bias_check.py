@@ -16,6 +16,7 @@ from odometry.modes.checks.turn_gain_check import ways_to_next
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.velocity import VelocityModes
 
+# Chosen with `one_bias_sigmas` of `ModesConfig` on robots of any pace (tests/studies/modes.md).
 WINDOW_S = 60.0  # turns to both sides lie in it
 # What was believed of the bias so long ago came of other turns, and by how much it may be off now.
 BEFORE_S, WALKS_RAD_S = 120.0, 0.002
@@ -23,7 +24,6 @@ TOLERANCE = 0.01  # as a share: no gain is identified better
 # Of the way to the next mode: by less even a mode that is known well differs from drive to drive.
 LEAST_WAY = 0.1
 MOST_SIGMAS = 6.0  # of one error about the bias: a spike is no gain
-"""Chosen with `one_bias_sigmas` of `ModesConfig` on robots of any pace (tests/studies/modes.md)."""
 
 
 def one_bias_check(

@@ -1,41 +1,32 @@
 """Runs of images that are nearly grey, before a model in colour."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import GREYISH, MOST_GREY, Classification
+from terrain.classification.answer import GREYISH, MOST_GREY
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.chroma import COLOUR_FLOOR, GREEN_FLOOR, chroma_of
-from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.likeness.likeness import FEWEST_IMAGES
 from terrain.classification.likeness.nearly_grey import CHANGES, NearlyGrey, made_grey
 from terrain.classification.model_file import read_model, write_model
 from terrain.image_labels.image_label import ImageLabel
 from terrain.image_labels.image_labeller import RunLikeness
 from terrain.images import to_grey
-
-SIZE_PX = 48
-NAMED = Classification("mud", 0.8, 1.0, {"mud": 0.8, "sand": 0.2}, probability_right=0.8)
-LIKE = Likeness(40, 0.5, 0.5, (), beyond=0.5)
+from tests.terrain.classification.likeness import coloured_patches
+from tests.terrain.classification.likeness.coloured_patches import LIKE, NAMED, SIZE_PX
 
 
-def photographs(seed, photos=8, each=3):
-    """Patches of two terrains with coloured grains; soil varies more than dust."""
-    rng = np.random.default_rng(seed)
-    images, labels, groups = [], [], []
-    for label, grains in (("dust", 12.0), ("soil", 25.0)):
-        for photo in range(photos):
-            mean = np.array([130, 115, 95]) * rng.uniform(0.8, 1.2)
-            for _ in range(each):
-                grain = rng.normal(0, grains, (SIZE_PX, SIZE_PX, 1)) + rng.normal(
-                    0, grains / 3, (SIZE_PX, SIZE_PX, 3)
-                )
-                images.append(np.clip(mean + grain, 0, 255).astype(np.uint8))
-                labels.append(label)
-                groups.append(f"{label} {photo}")
-    return images, np.array(labels), np.array(groups)
+def grains(rng, sigma):
+    """Of colours of their own."""
+    grey = rng.normal(0, sigma, (SIZE_PX, SIZE_PX, 1))
+    return grey + rng.normal(0, sigma / 3, (SIZE_PX, SIZE_PX, 3))
+
+
+photographs = partial(coloured_patches.photographs, grain=grains)
 
 
 def warm_grey(image):

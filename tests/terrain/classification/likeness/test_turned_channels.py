@@ -1,14 +1,15 @@
 """Runs of images whose channels are in another order, before a model in colour."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from odometry.run import UNKNOWN
-from terrain.classification.answer import TURNED, Classification
+from terrain.classification.answer import TURNED
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
+from terrain.classification.likeness.likeness import FEWEST_IMAGES
 from terrain.classification.likeness.turned_channels import (
     ORDERS,
     SMALL,
@@ -19,29 +20,21 @@ from terrain.classification.likeness.turned_channels import (
 from terrain.classification.model_file import read_model, write_model
 from terrain.image_labels.image_label import ImageLabel
 from terrain.image_labels.image_labeller import RunLikeness
+from tests.terrain.classification.likeness import coloured_patches
+from tests.terrain.classification.likeness.coloured_patches import LIKE, NAMED, SIZE_PX
 
-SIZE_PX = 48
-NAMED = Classification("mud", 0.8, 1.0, {"mud": 0.8, "sand": 0.2}, probability_right=0.8)
-LIKE = Likeness(40, 0.5, 0.5, (), beyond=0.5)
 LIGHTS = ((1.2, 1.0, 0.8), (0.85, 1.0, 1.2), (0.9, 1.1, 0.9), (1.25, 1.0, 0.7))
 
 
-def photographs(seed, photos=8, each=3):
-    """Patches of two terrains in sun and shade: light parts are yellow, dark ones blue."""
-    rng = np.random.default_rng(seed)
-    images, labels, groups = [], [], []
-    for label, grains in (("dust", 12.0), ("soil", 25.0)):
-        for photo in range(photos):
-            mean = np.array([130, 115, 95]) * rng.uniform(0.8, 1.2)
-            for _ in range(each):
-                light = rng.normal(0, grains, (SIZE_PX, SIZE_PX, 1))
-                colours = rng.normal(0, grains / 4, (SIZE_PX, SIZE_PX, 1))
-                image = mean + light * np.array([1.1, 1.0, 0.8]) + colours * np.array([1, 0, -1])
-                image += rng.normal(0, 1.5, image.shape)
-                images.append(np.clip(image, 0, 255).astype(np.uint8))
-                labels.append(label)
-                groups.append(f"{label} {photo}")
-    return images, np.array(labels), np.array(groups)
+def sun_and_shade(rng, sigma):
+    """Light parts are yellow, dark ones blue."""
+    light = rng.normal(0, sigma, (SIZE_PX, SIZE_PX, 1))
+    colours = rng.normal(0, sigma / 4, (SIZE_PX, SIZE_PX, 1))
+    grain = light * np.array([1.1, 1.0, 0.8]) + colours * np.array([1, 0, -1])
+    return grain + rng.normal(0, 1.5, grain.shape)
+
+
+photographs = partial(coloured_patches.photographs, grain=sun_and_shade)
 
 
 def in_light(gains):
