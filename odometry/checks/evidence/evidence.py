@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.cleaned_recording import CleanedRecording
+from odometry.checks.evidence.course_turns import course_turns
 from odometry.checks.evidence.heading import (
     CONSISTENT,
     Heading,
@@ -15,50 +16,10 @@ from odometry.checks.evidence.heading import (
     headings,
     turns_in_radians,
 )
-from odometry.checks.evidence.motion import Integrals, Motion, motion_between
+from odometry.checks.evidence.motion import Motion, motion_between
 from odometry.checks.evidence.scatter import scattered
+from odometry.checks.evidence.way_direction import yaw_by_gyroscope
 from odometry.checks.statistics.relation import Relation, relation
-
-ON_THE_SPOT = 0.3  # share of the difference of the treads: with less in common there is no course
-FAR_SHARE = 0.3  # share of the usual longest distance from which the course of a window is known
-APART = 1.6  # windows between the middles of two whose courses are compared, at most
-MOST_RAD = 1.2  # turn of the course from one to the next: more is a change of direction
-LEAST_TURNS = 20  # turns
-CORRELATED = 0.85  # with gyroscope or treads: else noise, slip or a sensor far ahead prevails
-
-
-def course_turns(motion: Motion, of: Integrals, width_m: float) -> tuple[Motion, FloatArray]:
-    """Motion between the middles of neighbouring windows (K), and the turn (K,) of the course.
-
-    Forwards and backwards are one direction, so that a sharp turn would count as one to the other
-    side: NaN. All are NaN where they go with the turns of no other sensor: then noise prevails.
-    """
-    distance = motion.distance_m
-    known = np.isfinite(distance)
-    if not known.any():
-        return motion.rows(np.empty(0, dtype=np.int64)), np.empty(0)
-    far = known & (distance > FAR_SHARE * np.quantile(distance[known], 0.95))
-    far &= np.abs(motion.mean_m) > ON_THE_SPOT * np.abs(motion.difference_m)
-    middle_s = (motion.start_s + motion.end_s) / 2
-    near = np.diff(middle_s) < APART * motion.lasts_s[1:]
-    rows = np.flatnonzero(far[1:] & far[:-1] & near)
-    begin_s, end_s = middle_s[rows], middle_s[rows + 1]
-    turn = np.diff(motion.course_rad)[rows]
-    turn = (turn + np.pi / 2) % np.pi - np.pi / 2
-    nothing = np.full((len(rows), 2), np.nan)
-    between = Motion(begin_s, end_s, *of.between(begin_s, end_s), nothing, nothing)
-    is_sharp = between.least_turn_rad(width_m) > np.pi / 2
-    turn = np.where(is_sharp | (np.abs(turn) > MOST_RAD), np.nan, turn)
-    return between, np.where(_correlated(between, turn), turn, np.nan)
-
-
-def _correlated(between: Motion, turn: FloatArray) -> bool:
-    found = relation(turn, between.gyroscope_rad, between.lasts_s)
-    found = found or relation(turn, between.left_m, between.right_m)
-    return (
-        found is not None and found.measured >= LEAST_TURNS and abs(found.correlation) > CORRELATED
-    )
-
 
 MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
 COURSE_WINDOWS_S = (1.0, 2.0, 4.0)
@@ -97,9 +58,26 @@ class Evidence(CleanedRecording):
 
     @cached_property
     def motion(self) -> Motion:
-        """Windows of half a second or more, between poses where there are any; yaw in radians."""
-        raw = self.raw_motion
-        return raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
+        """Windows of half a second or more, between poses where there are any; yaw in radians.
+
+        The poses are those of the robot's origin, where `[sensors]` states their place.
+        """
+        return self.of_origin(self.raw_motion)
+
+    def of_origin(self, raw: Motion) -> Motion:
+        """Raw windows (K) with yaw in radians, and moved as the robot's origin was."""
+        read = raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
+        if self.run.sensors.pose_m is None:
+            return read
+        yaw = read.yaw_rad if self.yaw_measured else self.gyroscope_yaw(read)
+        return read.of_point(yaw, np.array(self.run.sensors.pose_m[:2]))
+
+    def gyroscope_yaw(self, motion: Motion) -> FloatArray:
+        """Heading (K, 2) of windows of positions by the gyroscope, NaN where it is not known."""
+        fastest = self._fastest_yaw_rate
+        if fastest is None or fastest > DEGREES_RAD_S:
+            return np.full((len(motion), 2), np.nan)
+        return yaw_by_gyroscope(motion, self.integrals)
 
     @cached_property
     def heading(self) -> Heading | None:
@@ -214,7 +192,9 @@ class Evidence(CleanedRecording):
         for window_s in COURSE_WINDOWS_S:
             if np.isfinite(found[1]).any():
                 break
-            longer = motion_between(self.run, self.integrals, self.poses_used, window_s)
+            longer = self.of_origin(
+                motion_between(self.run, self.integrals, self.poses_used, window_s)
+            )
             found = course_turns(self._without_left_out(longer), self.integrals, width_m)
         return found
 

@@ -89,6 +89,15 @@ class Motion:
         """The same with another reading of the measured yaw (K, 2)."""
         return replace(self, yaw_rad=read(self.yaw_rad))
 
+    def of_point(self, yaw_rad: FloatArray, place_m: FloatArray) -> "Motion":
+        """The same of the point from which the measured one lies at (2,) in the robot frame.
+
+        Where its yaw (K, 2) at the start and at the end is not known, as it is.
+        """
+        cosine, sine = np.diff(np.cos(yaw_rad))[:, 0], np.diff(np.sin(yaw_rad))[:, 0]
+        swung_m = np.stack([cosine, -sine, sine, cosine], axis=-1).reshape(-1, 2, 2) @ place_m
+        return replace(self, moved_m=self.moved_m - np.nan_to_num(swung_m))
+
     @property
     def course_rad(self) -> FloatArray:
         """Direction (K,) of the measured displacement in the frame of the poses."""

@@ -5,20 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
-from odometry.checks.evidence.heading import across_m, along_m
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.checks.findings.undo import moved
 from odometry.checks.poses.coarse_part import coarse_part
-from odometry.checks.poses.course import OFF_RAD
+from odometry.checks.poses.far_sensor import far_sensor
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
 from odometry.checks.poses.yaw_jumps import yaw_jumps
-from odometry.checks.statistics.relation import pieces, relation
-from odometry.checks.treads.one_motion import motion_alone
-from odometry.checks.units.swinging_sensor import swinging_sensor
 
-LEAST_ARM_M = 0.6
-LASTING = 0.4  # share of the swing that each piece of the recording has
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
 CLOSER = 0.75  # of the usual time to the neighbours, that outliers have where rows are mixed
 MIXED = "; or poses of two times are mixed there (stamps that went back and were sorted)"
@@ -47,7 +40,7 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from pose_bursts(evidence, track)
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
     yield from yaw_jumps(evidence, of_yaw)
-    yield from _lever_arm(evidence)
+    yield from far_sensor(evidence)
     inside = known[rows]  # of the time of the treads
     yield from jumps(evidence, rows[inside], travel_m[inside], np.array(spans_s).reshape(-1, 2))
 
@@ -79,55 +72,6 @@ def _outliers(evidence: Evidence) -> Iterator[Finding]:
         "Leave these poses empty; the filter's gate refuses them and fits weigh them down",
         tuple((evidence.run_time_s(s),) * 2 for s in pose.stamps_s[found]),
     )
-
-
-def _place(x_m: float, y_m: float) -> str:
-    """A place in the robot frame in words, up to "the centre"."""
-    along = f"{abs(x_m):.2f} m {'ahead of' if x_m >= 0 else 'behind'}"
-    return f"{along} and {abs(y_m):.2f} m to the {'left' if y_m >= 0 else 'right'} of"
-
-
-def _axis_rad(evidence: Evidence) -> float:
-    """From yaw to the robot's axis; nothing where an offset of yaw has a name of its own."""
-    offset = evidence.heading.offset_rad if evidence.heading is not None else 0.0
-    return offset if abs(offset) < OFF_RAD else 0.0
-
-
-def _lever_arm(evidence: Evidence) -> Iterator[Finding]:
-    """A sensor far from the centre swings sideways, or forwards, with every turn.
-
-    In circles of one radius a place to the side is a scale of the treads as well.
-    """
-    if motion_alone(evidence) is not None:
-        return
-    m = evidence.motion
-    turn = m.gyroscope_rad if evidence.yaw_rate is not None else m.turn_rad
-    across, along = evidence.sideways_m, evidence.forward_m
-    if (yaw := swinging_sensor(evidence)) is not None:
-        across, along = across_m(m, yaw), along_m(m, yaw)
-    sideways, forward = relation(across, turn), relation(along, m.mean_m, turn)
-    if sideways is None or forward is None:
-        return
-    x_m, y_m = sideways.slope, -float(forward.coefficients[1])
-    sure = sideways.certain(0, 8.0), forward.certain(1, 8.0)
-    far = max(abs(x_m) * sure[0], abs(y_m) * sure[1])
-    limit_m = max(LEAST_ARM_M, (evidence.run.robot.length or 1.0) / 2)
-    place = 0 if far == abs(x_m) else 1
-    columns = (turn,) if place == 0 else (m.mean_m, turn)
-    fits = pieces((across, along)[place], *columns)
-    size = (x_m, -y_m)[place]
-    swings = [of.coefficients[place] / size for of in fits if of.certain(place)]
-    if far > limit_m and len(swings) > 1 and min(swings) > LASTING:
-        yield Finding(
-            "far_sensor",
-            Level.WARNING,
-            f"measured positions swing in turns like a point that lies {_place(x_m, y_m)} the "
-            f"centre of the robot; more than {limit_m:.2f} m is far",
-            "The sensor is mounted far from the centre (a lever arm), or the frame of the poses is "
-            "not that of the robot, or positions are late against yaw (filtered)",
-            f"State its place: [sensors] pose = [{x_m:.2f}, {y_m:.2f}, 0.0]",
-            mend=moved(x_m, y_m, _axis_rad(evidence)),
-        )
 
 
 def pose_outages(evidence: Evidence) -> Iterator[Finding]:

@@ -81,7 +81,9 @@ def _way_beyond(evidence: Evidence) -> tuple[float, float]:
     heading = evidence.heading
     if heading is None or heading.forwards < LEAST_FORWARDS:
         return 0.0, 0.0
-    of = motion_between(evidence.run, evidence.integrals, evidence.poses_used, WINDOW_S)
+    of = evidence.of_origin(
+        motion_between(evidence.run, evidence.integrals, evidence.poses_used, WINDOW_S)
+    )
     scale = max(evidence.metres_per_metre or 1.0, 1.0)
     most, least = (
         scale * (of_side(of.left_m, 0.0) + of_side(of.right_m, 0.0)) / 2

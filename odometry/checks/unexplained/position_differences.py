@@ -214,6 +214,8 @@ def _fits(
     middle = (yaw_rad[1:] + yaw_rad[:-1]) / 2
     unknown = np.isnan(middle)
     reckoned = np.append(0.0, np.cumsum(steps_m * np.exp(1j * np.nan_to_num(middle))))
+    if (place_m := evidence.run.sensors.pose_m) is not None:
+        reckoned += complex(*place_m[:2]) * np.exp(1j * np.nan_to_num(yaw_rad))
     first = _begins(at_s)
     left_out = evidence.left_out(at_s[first], at_s[first + count - 1])
     noise_m = TIMES_NOISE * evidence.position_sigma_m * np.sqrt(count)

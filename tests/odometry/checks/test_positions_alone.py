@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.checks.evidence.evidence import Evidence, course_turns
+from odometry.checks.evidence.course_turns import course_turns
+from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.unexplained.position_differences import paths_apart

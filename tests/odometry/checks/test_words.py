@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from odometry.checks.findings.unit_tables import Unit, tread_units
-from odometry.checks.poses.poses import _place
+from odometry.checks.poses.far_sensor import _place
 from odometry.checks.units.unit_findings import tread_unit
 
 
