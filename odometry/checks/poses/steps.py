@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import READINGS
 from odometry.checks.evidence.motion import WIDTH
+from odometry.geometry import se2
 
 JUMP_TIMES = 7.0  # the usual change of the difference to dead reckoning over the same time
 JITTER_S = 0.4  # by which poses that came in bursts were late
@@ -21,7 +22,10 @@ BESIDE_S = 0.5  # and their mean over so long at least: where poses come in burs
 
 
 def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
-    """Positions (M, 2) by mean tread travel along the measured yaw; zeros where yaw is unknown."""
+    """Positions (M, 2) by mean tread travel along the measured yaw; zeros where yaw is unknown.
+
+    Those of the antenna, where `[sensors]` states its place.
+    """
     pose, heading = evidence.run.pose, evidence.heading
     if pose is None or heading is None:
         return np.zeros((len(rows), 2))
@@ -33,12 +37,9 @@ def reckoned(evidence: Evidence, rows: IntArray, scale: float) -> FloatArray:
     travel_m = (of.left_m(stamps_s) + of.right_m(stamps_s)) / 2
     steps = scale * np.diff(travel_m)
     middle = (yaw[1:] + yaw[:-1]) / 2
-    return np.concatenate(
-        [
-            np.zeros((1, 2)),
-            np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0),
-        ]
-    )
+    way_m = np.cumsum(np.stack([steps * np.cos(middle), steps * np.sin(middle)], -1), 0)
+    of_robot = np.column_stack([np.concatenate([np.zeros((1, 2)), way_m]), yaw])
+    return se2.transform(of_robot, np.array((evidence.run.sensors.pose_m or (0.0, 0.0))[:2]))
 
 
 def sharp_turns_s(evidence: Evidence, stamps_s: FloatArray) -> FloatArray:
