@@ -22,7 +22,7 @@ from odometry.preparation.prepared import prepared_run
 from odometry.run import UNKNOWN, Run
 from odometry.run_span import Span
 from odometry.terrain_sources import NamedTerrain, ReplayedFooting
-from terrain.believed_images import as_checked
+from terrain.believed import as_checked
 from terrain.checks.recording import checked_run
 from terrain.config import Config
 from terrain.result.contradictions import contradictions, labels_beneath

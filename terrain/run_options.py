@@ -6,7 +6,7 @@ from pathlib import Path
 from odometry.checks.findings.finding import CheckReport
 from odometry.run import Run
 from odometry.run_span import Span
-from terrain.believed_images import believed
+from terrain.believed import believed, without_wrong_velocity
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.result.run_result import RunResult
@@ -74,25 +74,28 @@ class RunOptions:
         return replace(self, **{name: file and file.absolute() for name, file in files.items()})
 
     def believed(self, run: Run, report: CheckReport) -> "tuple[Run, RunOptions, str]":
-        """A run and options, with no more of its images than show the terrain ahead.
+        """A run and options, without what the check of the run contradicts.
 
-        Without vision where images show other terrain, and beside the parts of them that show the
-        robot itself. A published system (a preset) is what it is, and keeps its camera.
+        Without velocity.csv where it is wrong, without vision where images show other terrain, and
+        beside the parts of them that show the robot itself. A published system (a preset) is what
+        it is, and keeps its camera.
 
         Returns
         -------
         Run
         RunOptions
         str
-            Why vision is left out, or "".
+            Why velocities or vision are left out, or "".
         """
-        if self.preset is not None or not self.reads_images:
+        if self.preset is not None:
             return run, self, ""
-        run, cause = believed(run, report)
+        run, said = without_wrong_velocity(run, report)
+        run, cause = believed(run, report) if self.reads_images else (run, "")
         if not cause:
-            return run, self, ""
+            return run, self, said
         source = None if self.source == "camera" else self.source
-        said = f"vision is left out, as with --no-vision: {cause}"
+        vision = f"vision is left out, as with --no-vision: {cause}"
+        said = "; ".join(filter(None, (said, vision)))
         return run, replace(self, vision=False, source=source), said
 
     def replay(self, run: Run, *, show_progress: bool = False) -> RunResult:

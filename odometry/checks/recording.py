@@ -62,6 +62,7 @@ from odometry.checks.treads.wrapped_counts import unwrapped
 from odometry.checks.unexplained.disagreement import sensors_disagree
 from odometry.checks.unexplained.unrelated_turns import agreement, yaw_against_course
 from odometry.checks.units.units import units
+from odometry.checks.velocity.velocity import velocity
 from odometry.errors import RunFolderError
 from odometry.run import Run
 
@@ -162,7 +163,8 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
         said = [*wrapped, *copies, *without_consequences([*late, *confirmed_ones])]
         stays = list(poses_stay(evidence, said))
-    findings = in_order([*said, *stays])
+        of_velocity = list(velocity(evidence))  # which no other check uses
+    findings = in_order([*said, *stays, *of_velocity])
     return CheckReport(run.folder, findings, tuple(_skipped(evidence)))
 
 

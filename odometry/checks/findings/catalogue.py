@@ -66,6 +66,11 @@ CATALOGUE: dict[str, str] = {
     "dropped_speeds": "zeros amid motion",
     "coarse_speeds": "quantisation",
     "saturated_speed": "speeds clipped at a limit",
+    # Velocities
+    "velocity_unit": "velocity.csv in another unit: km/h, mm/s, degrees per second ...",
+    "velocity_reversed": "vx backwards, vy to the right or wz clockwise",
+    "velocity_axes": "vx and vy exchanged, or along the axes of a map",
+    "velocity_unrelated": "velocities of another motion, or never measured",
     # Poses
     "yaw_in_degrees": "yaw in degrees",
     "yaw_reversed": "yaw clockwise, or a compass bearing",

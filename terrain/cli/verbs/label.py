@@ -115,7 +115,7 @@ def label(
 
     from odometry.feel.model_file import read_feel_model
     from odometry.parameters import read_parameters
-    from terrain.believed_images import run_to_label
+    from terrain.believed import run_to_label
     from terrain.cli.outputs import claim_folder
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.texts.label_text import spans_by_run, summary

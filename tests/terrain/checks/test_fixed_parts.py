@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import CheckReport
-from terrain.believed_images import run_to_label
+from terrain.believed import run_to_label
 from terrain.camera.camera import Camera
 from terrain.camera.robot_outlines import covered
 from terrain.checks.fixed_parts import FEWEST, fixed_parts, robot_in_images

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import CheckReport
-from terrain.believed_images import run_to_label
+from terrain.believed import run_to_label
 from terrain.checks.ground_steps import pairs_to_compare
 from terrain.checks.lost_details import _stretches, lost_details
 from terrain.checks.terrain_views import TerrainViews

@@ -1,4 +1,4 @@
-"""What of its images a run may take its terrain from, by what the check of the recording found."""
+"""What of a run may be used, by what the check found: images, and measured velocities."""
 
 import warnings
 from dataclasses import replace
@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.checks.findings.finding import CheckReport, Level
+from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.run import Run
 from terrain.checks.fixed_parts import ROBOT_IN_IMAGES
 from terrain.errors import PatchError
@@ -44,10 +45,19 @@ def shows_elsewhere(report: CheckReport) -> str:
     return next((found.cause for found in report.findings if found.name in ELSEWHERE), "")
 
 
+def without_wrong_velocity(run: Run, report: CheckReport) -> tuple[Run, str]:
+    """A run without velocity.csv where the check warns of it; and why, or ""."""
+    for finding in report.at(Level.WARNING):
+        if finding.name in VELOCITY_FAULTS:
+            return replace(run, velocity=None), f"velocity.csv is left out: {finding.cause}"
+    return run, ""
+
+
 def as_checked(run: Run, report: CheckReport, source: str, *, has_feel: bool) -> tuple[Run, str]:
     """A run and its source of terrain, by name, by what the check found; it is warned of."""
     for finding in report.at(Level.WARNING):
         warnings.warn(f"{run.folder}: {finding.line.partition(': ')[2]}", stacklevel=3)
+    run, _ = without_wrong_velocity(run, report)
     if source != "camera":
         return run, source
     run, cause = believed(run, report)

@@ -1,6 +1,7 @@
-"""Images that show other terrain than that ahead are not believed: `run`, `batch`, in Python."""
+"""Images of other terrain, and wrong velocities, are not believed: `run`, `batch`, in Python."""
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,8 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
+from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.run import Run
-from terrain.believed_images import ELSEWHERE, OF_STRETCHES, run_to_label
+from terrain.believed import ELSEWHERE, OF_STRETCHES, run_to_label
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.verbs.batch import batch
 from terrain.cli.verbs.run import run
@@ -61,6 +63,32 @@ def test_other_sources_stay(source):
     options = RunOptions(Config(), source=source, feel=Path("feel"))
     report = CheckReport(Path("a"), (found("images_unrelated"),))
     assert options.believed(RUN, report) == (RUN, options, "")
+
+
+@pytest.mark.parametrize("name", sorted(VELOCITY_FAULTS))
+@pytest.mark.parametrize("model", [None, Path("a.model")])
+def test_wrong_velocities_are_left_out_and_right_ones_stay(name, model, across_run):
+    options, of = RunOptions(Config(), model=model), Run.read(across_run)
+    of = replace(of, velocity=of.odometry)
+    report = CheckReport(across_run, (replace(found(name), cause="vx is in km/h"),))
+    without, same, said = options.believed(of, report)
+    assert (without.velocity, same) == (None, options)
+    assert said == "velocity.csv is left out: vx is in km/h"
+    assert options.believed(of, CheckReport(across_run, ()))[0].velocity is of.velocity
+
+
+def test_in_python_the_velocities_of_a_folder_are_left_out_as_well(across_run, tmp_path):
+    folder = tmp_path / "run"
+    shutil.copytree(across_run, folder)
+    of = Run.read(folder)
+    mean = (of.odometry["v_left"] + of.odometry["v_right"]) / 2
+    rows = zip(of.odometry["t"], -mean, strict=True)
+    lines = ["t,vx,vy,wz", *(f"{at_s},{vx}," + "," for at_s, vx in rows)]
+    (folder / "velocity.csv").write_text("\n".join(f"{line}" for line in lines) + "\n")
+    with pytest.warns(UserWarning, match="vx points backwards"):
+        wrong = run_odometry(folder)
+    assert wrong.run.velocity is None
+    assert wrong.replay.means.tobytes() == run_odometry(across_run).replay.means.tobytes()
 
 
 @pytest.mark.parametrize("name", sorted(ELSEWHERE))

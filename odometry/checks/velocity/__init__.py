@@ -1,0 +1,1 @@
+"""Measured velocities (velocity.csv) against treads, poses and gyroscope."""
