@@ -26,6 +26,7 @@ from odometry.estimation.measurement import (
     Place,
     pose_measurement,
     velocity_measurement,
+    weighed_down,
 )
 from odometry.estimation.noise_scale import NoiseScale, adapted, velocity_variances
 from odometry.estimation.other_places import Others, left, return_event, returned, watched
@@ -244,5 +245,5 @@ class VelocityUpdate:
         )
         if not len(measured.residual):
             return belief
-        after = updated(belief, measured)
+        after = updated(belief, weighed_down(measured, belief[1]))
         return bounded(after.mean, after.covariance, self.track_width)

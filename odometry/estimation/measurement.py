@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.estimation.noise_scale import huber_factor
 from odometry.estimation.transition import (
     ALPHA_LEFT,
     ALPHA_RIGHT,
@@ -152,6 +153,22 @@ def variance_of_slip_factors(by_state: FloatArray, covariance: FloatArray) -> fl
     """
     by_slip = by_state[ALPHA_LEFT:]
     return float(by_slip.dot(covariance[ALPHA_LEFT:, ALPHA_LEFT:]).dot(by_slip))
+
+
+def weighed_down(measured: Measurement, covariance: FloatArray) -> Measurement:
+    """The same with more noise of each number that lies beyond two standard deviations (Huber).
+
+    Parameters
+    ----------
+    measured : Measurement
+        Of m numbers, whose noise is independent.
+    covariance : (9, 9)
+        Of the state.
+    """
+    noise = np.diag(measured.covariance)
+    variances = np.sum((measured.jacobian @ covariance) * measured.jacobian, axis=1) + noise
+    factors = map(huber_factor, measured.residual.tolist(), variances.tolist())
+    return measured._replace(covariance=np.diag(noise * np.fromiter(factors, float, len(noise))))
 
 
 def velocity_measurement(

@@ -6,10 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.estimation.measurement import (
+    Measurement,
     pose_measurement,
     reference_point,
     tread_yaw_rate,
     velocity_measurement,
+    weighed_down,
 )
 from odometry.estimation.transition import STATES, transition
 
@@ -99,3 +101,20 @@ def test_only_what_was_measured_counts(pose, places):
     np.testing.assert_array_equal(part.residual, whole.residual[places])
     np.testing.assert_array_equal(part.jacobian, whole.jacobian[places])
     np.testing.assert_array_equal(part.covariance, R[np.ix_(places, places)])
+
+
+@given(
+    residual=st.lists(st.floats(-30, 30), min_size=3, max_size=3),
+    spread=st.floats(0.0, 2.0),
+    state=states,
+)
+def test_what_lies_far_off_weighs_as_huber_has_it(residual, spread, state):
+    """Noise grows by the square of the deviations over two of them, of each number by itself."""
+    covariance = spread**2 * np.eye(STATES)
+    jacobian = velocity_measurement(state, np.zeros(3), np.array([0.4, 0.9]), 0.2, R).jacobian
+    measured = Measurement(np.array(residual), jacobian, R)
+    noise = np.diag(weighed_down(measured, covariance).covariance)
+    expected = np.diag(jacobian @ covariance @ jacobian.T + R)
+    deviations = np.abs(residual) / np.sqrt(expected)
+    factors = np.where(deviations > 2, deviations**2 / 4, 1.0)
+    np.testing.assert_allclose(noise, np.diag(R) * factors, rtol=1e-9)
