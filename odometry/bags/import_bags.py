@@ -10,7 +10,6 @@ import tomli_w
 
 from odometry.arrays import FloatArray
 from odometry.bags.damage import Losses
-from odometry.bags.fix_rows import LocalMetres
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import Plan
@@ -22,6 +21,7 @@ from odometry.bags.streams import Consumer, Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
 from odometry.bags.topic import Connection, Message
 from odometry.errors import BagError
+from odometry.fixes.local_metres import LocalMetres
 
 MOST_REASONS = 3
 MOST_TOO_FAST = 0.1  # of differences of places; an encoder is reset far more rarely

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.bags.fix_rows import LocalMetres, fix_reader
+from odometry.bags.fix_rows import fix_reader
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
@@ -27,6 +27,7 @@ from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.streams import Consumer, Images, Rows, Stream, TransformRows
 from odometry.bags.survey import Survey
 from odometry.bags.transforms import TransformPoses
+from odometry.fixes.local_metres import LocalMetres
 
 IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")
 OTHER = "other_odometry"

@@ -36,16 +36,20 @@ def unquoted_text(cell: str) -> str:
 
 @contextmanager
 def opened_csv(
-    file: Path, error: type[OdometryError]
+    file: Path, error: type[OdometryError], separator: str = ",", before: int = 0
 ) -> Iterator[tuple[list[str], Iterator[Block]]]:
     """Open a CSV file: its header, and its rows in blocks; blank lines are left out.
 
     Parameters
     ----------
     file : Path
-        Comma separated, UTF-8, one header line.
+        UTF-8, one header line.
     error : child of OdometryError
         What is raised.
+    separator : str
+        Between cells.
+    before : int
+        Lines above the header, which are left out.
 
     Raises
     ------
@@ -54,7 +58,7 @@ def opened_csv(
         not end, a column named twice, or a row of another length than the header.
     """
     with opened_lines(file, error) as lines:
-        rows = _rows(lines, file, error)
+        rows = _rows(islice(lines, before, None), file, error, separator, before)
         _, header = next(rows, (1, []))
         header = [unquoted_text(name.strip()) for name in header]
         repeated = sorted({name for name in header if header.count(name) > 1})
@@ -64,14 +68,15 @@ def opened_csv(
 
 
 def _rows(
-    lines: Iterator[str], file: Path, error: type[OdometryError]
+    lines: Iterator[str], file: Path, error: type[OdometryError], separator: str, before: int
 ) -> Iterator[tuple[int, list[str]]]:
-    reader = csv.reader(lines, strict=True)
+    reader = csv.reader(lines, strict=True, delimiter=separator)
     try:
         for row in reader:
-            yield reader.line_num, row
+            yield before + reader.line_num, row
     except csv.Error as problem:
-        raise error(f"{file}: row {reader.line_num}: cannot be read as CSV: {problem}") from problem
+        row_number = before + reader.line_num
+        raise error(f"{file}: row {row_number}: cannot be read as CSV: {problem}") from problem
 
 
 def _blocks(
@@ -141,9 +146,17 @@ LONGEST_NAME = 1000  # characters; an array of names has room for the longest in
 
 
 def numbers(
-    cells: Sequence[str], file: Path, lines: Sequence[int], name: str, *, may_miss: bool
+    cells: Sequence[str],
+    file: Path,
+    lines: Sequence[int],
+    name: str,
+    *,
+    may_miss: bool,
+    largest: float | None = None,
 ) -> FloatArray:
     """Numbers (N,) of the cells of one column; an empty one is NaN where it `may_miss`.
+
+    The largest that is accepted is that of the column's name where `largest` is None.
 
     Raises
     ------
@@ -156,7 +169,8 @@ def numbers(
         values = np.array(
             [_number(cell, file, row, name) for cell, row in zip(cells, lines, strict=True)]
         )
-    largest = LARGEST_BY_NAME.get(name, LARGEST)
+    if largest is None:
+        largest = LARGEST_BY_NAME.get(name, LARGEST)
     wrong = ~(np.abs(values) <= largest) & ~(may_miss & np.isnan(values))
     if wrong.any():
         first = int(np.argmax(wrong))

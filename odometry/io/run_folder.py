@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from odometry.arrays import AnyArray
+from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError, TrajectoryError
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write, leads_out
@@ -31,6 +31,7 @@ FILES = {
 SUFFIXES = (".bag", ".mcap", ".db3", ".active")
 PACKED = (".zstd", ".zst")
 MOST_ENTRIES = 1000  # of a folder that are listed
+ZONE_S, MOST_ZONE_S = 900.0, 14 * 3600.0  # time zones differ by whole quarters of an hour
 LEVEL = 0.2  # height of a path over its extent: below, z points up
 
 
@@ -135,8 +136,8 @@ def pose_columns(trajectory: SpatialTrajectory) -> dict[str, AnyArray]:
     }
 
 
-def poses_within(trajectory: SpatialTrajectory, odometry: Table) -> int:
-    """How many poses lie within the odometry of a run.
+def poses_within(stamps_s: FloatArray, odometry: Table) -> int:
+    """How many poses, of stamps (N,), lie within the odometry of a run.
 
     Raises
     ------
@@ -144,13 +145,30 @@ def poses_within(trajectory: SpatialTrajectory, odometry: Table) -> int:
         If none does: other clocks, or another run.
     """
     first_s, last_s = odometry.stamps_s[[0, -1]]
-    within = int(np.sum((trajectory.stamps_s >= first_s) & (trajectory.stamps_s <= last_s)))
+    within = int(np.sum((stamps_s >= first_s) & (stamps_s <= last_s)))
     if not within:
         raise TrajectoryError(
-            f"the poses are of {trajectory.stamps_s[0]:.3f} to {trajectory.stamps_s[-1]:.3f} s, "
-            f"{odometry.file} of {first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
+            f"the poses are of {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, {odometry.file} of "
+            f"{first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
+            f"{_another_zone(stamps_s, odometry.stamps_s)}"
         )
     return within
+
+
+def _another_zone(stamps_s: FloatArray, of_odometry_s: FloatArray) -> str:
+    """What is said where stamps (N,) begin near those of the odometry but for a time zone."""
+    ahead_s = float(stamps_s[0] - of_odometry_s[0])
+    quarters = round(ahead_s / ZONE_S)
+    if not 0 < abs(quarters) * ZONE_S <= MOST_ZONE_S:
+        return ""
+    moved_s = stamps_s - quarters * ZONE_S
+    if moved_s[0] > of_odometry_s[-1] or moved_s[-1] < of_odometry_s[0]:
+        return ""
+    hours = quarters * ZONE_S / 3600
+    return (
+        f". They share time where the poses are moved by {-hours:+g} hours: are they in another "
+        "time zone than the odometry?"
+    )
 
 
 def travel_axis(trajectory: SpatialTrajectory) -> int:

@@ -135,7 +135,8 @@ def format_of(file: Path) -> str:
     if found is None:
         known = "; ".join(f"{name}: {one.about}" for name, one in FORMATS.items())
         raise TrajectoryError(
-            f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected {known}"
+            f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected {known}; "
+            "or, as --pose of `import`, CSV whose header names latitude, longitude and a stamp"
         )
     return found
 

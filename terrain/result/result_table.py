@@ -1,9 +1,7 @@
 """The content of result.json, with the covariance of the odometer as a table and as columns."""
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -13,6 +11,7 @@ from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
+from odometry.fixes.origin import stated_origin
 from odometry.run import UNKNOWN
 from terrain.result.evaluated import is_used_by_filter
 from terrain.result.evaluation_notes import advice, filter_table, verdict
@@ -81,7 +80,7 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "program": f"terrain-odometry {version('terrain-odometry')}",
         "run": result.run.name,
         "robot": asdict(result.run.robot),
-        "origin": _origin(result),
+        "origin": stated_origin(result.run.settings.get("source")),
         "vision": result.watcher is not None,
         "terrain_source": result.source,
         "initial_terrain": result.initial_terrain,
@@ -115,19 +114,6 @@ def result_table(result: RunResult) -> dict[str, Any]:
         "learned": {name: dict(of.values) for name, of in result.learned.terrains.items()},
         "config": result.config.to_table(),
     }
-
-
-def _origin(result: RunResult) -> list[float] | None:
-    """Latitude, longitude [deg] and height [m] of x = y = z = 0, where run.toml says them."""
-    source = result.run.settings.get("source")
-    origin = source.get("origin") if isinstance(source, Mapping) else None
-    if isinstance(origin, Mapping):  # as `import` writes it
-        origin = [origin.get(name) for name in ("latitude", "longitude", "altitude")]
-    if not isinstance(origin, list) or len(origin) not in {2, 3}:
-        return None
-    if not all(type(number) in {int, float} and isfinite(number) for number in origin):
-        return None
-    return [float(number) for number in origin]
 
 
 def error_tables(result: RunResult) -> dict[str, dict[str, Any]]:

@@ -16,6 +16,7 @@ from odometry.modes.track import follow_modes
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle
+from odometry.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.run_inputs import inputs_of
 from odometry.windows.windows import windows_of
@@ -23,6 +24,7 @@ from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.photographs.patches import find_photos, stated_metres_per_pixel
 from terrain.cli.verbs.evaluate import _rows
+from terrain.cli.verbs.pose_tables import read_pose_table
 from terrain.config import Config
 from terrain.images import read_image
 from terrain.main_job import run_odometry
@@ -149,9 +151,23 @@ def _of_runs(folder):
         yield reader_of(
             f"{name}.csv", folder / f"{name}.csv", text.encode(), text_changed, lambda: _use(folder)
         )
+    yield _of_fixes(folder / "gnss.csv")
     yield reader_of(
         "run.toml", folder / "run.toml", RUN.encode(), text_changed, lambda: _use(folder)
     )
+
+
+def _of_fixes(file):
+    odometry = Table(file, {"t": np.arange(8) * 0.1}, np.arange(8))
+    rows = [f"{100 * i},3,48.10000{i},11.5000{i},51{i}.5" for i in range(8)]
+    text = "\n".join(["time_ms,fix_type,latitude,longitude,altitude", *rows]) + "\n"
+
+    def use():
+        table = read_pose_table("pose", file, {}, odometry)
+        assert np.isfinite(np.stack([table.columns[name] for name in "txy"])).all()
+        assert (np.diff(table.columns["t"]) > 0).all()
+
+    return reader_of("latitude and longitude", file, text.encode(), text_changed, use)
 
 
 def _use(folder):

@@ -15,7 +15,8 @@ def all_readers(tmp_path_factory):
 
 
 NAMES = [
-    *("odometry.csv", "pose.csv", "velocity.csv", "images.csv", "truth.csv", "imu.csv", "run.toml"),
+    *("odometry.csv", "pose.csv", "velocity.csv", "images.csv", "truth.csv", "imu.csv"),
+    *("latitude and longitude", "run.toml"),
     *("parameter set", "velocity modes", "traction modes", "config", "camera", "vehicle", "TUM"),
     *("image, png", "image, jpg", "image, tiff", "image, bmp"),
     *("camera_info", "camchain", "camera XML", "transforms", "marks.csv"),

@@ -42,6 +42,11 @@ CAUSES = (
         "Write the names of the columns in the first line",
     ),
     (
+        r"pose\.csv: the column '\w+' is missing; the header has .*(?i:\blat(itude)?\b)",
+        "Positions are latitude and longitude, not metres",
+        "Move the file out of the run folder, and: terrain-odometry import RUN --pose FILE",
+    ),
+    (
         r"pose\.csv: the column 'yaw' is missing",
         "The heading was not measured, or has another name",
         "Write an empty column yaw where it was not measured: positions alone are used then",

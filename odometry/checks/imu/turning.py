@@ -16,6 +16,7 @@ from odometry.checks.findings.undo import (
 )
 from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 from odometry.checks.turns.turns_in_parts import turns_flip
+from odometry.fixes.origin import stated_origin
 
 LEAST_FORWARDS = 0.5  # how clearly treads say which way is forwards
 
@@ -142,6 +143,8 @@ def _pose_opposite(evidence: Evidence, others: str, *, alone: bool) -> Finding:
         cause = (
             "Positions are mirrored: x and y are swapped (north before east, NED) or one negated"
         )
+        if stated_origin(evidence.run.settings.get("source")):
+            cause += " (latitude and longitude are exchanged, or a south or west is not negative)"
     elif evidence.heading is None:
         cause = "The yaw of pose.csv is reversed, or all of it is in a frame with z down (NED)"
     else:

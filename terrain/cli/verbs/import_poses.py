@@ -12,9 +12,9 @@ from terrain.cli.options import trajectory_options
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 PLACE = (
-    "pose.csv: taken as the poses of the robot's centre. If they are those of a camera, lidar or "
-    "marker, write its place, [sensors] pose = [x, y, z], to run.toml: a fit cannot tell it from "
-    "x_icr"
+    "pose.csv: taken as the poses of the robot's centre. If they are those of an antenna, camera, "
+    "lidar or marker, write its place, [sensors] pose = [x, y, z], to run.toml: a fit cannot tell "
+    "it from x_icr"
 )
 
 
@@ -41,7 +41,10 @@ def pose_options(command: Callable[..., None]) -> Callable[..., None]:
     """Add --pose, --truth, --times and --axes; the command gets them as `poses`."""
 
     @click.option(
-        "--pose", type=FILE, help="Poses of another program (TUM, KITTI, EuRoC) as pose.csv."
+        "--pose",
+        type=FILE,
+        help="Poses of another program (TUM, KITTI, EuRoC), or latitude and longitude (CSV), as "
+        "pose.csv.",
     )
     @click.option("--truth", type=FILE, help="The same as truth.csv: for scoring alone.")
     @trajectory_options
@@ -80,35 +83,33 @@ def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
     OdometryError
         If a file cannot be read, or has no stamp in common with the odometry.
     """
+    from odometry.fixes.origin import write_origin
     from odometry.io.csv_table import write_csv_table
-    from odometry.io.run_folder import (
-        doubt_of_axes,
-        pose_columns,
-        poses_within,
-        read_settings,
-        read_tables,
-    )
-    from odometry.io.trajectory_files import read_trajectory
+    from odometry.io.run_folder import poses_within, read_settings, read_tables
+    from terrain.cli.verbs.pose_tables import read_pose_table
 
     odometry = read_tables(folder)["odometry"]
-    trajectories = {
-        name: read_trajectory(file, times=poses.times, axes=poses.axes)
+    settings = read_settings(folder)
+    times, axes = poses.times, poses.axes
+    tables = {
+        name: read_pose_table(name, file, settings, odometry, times=times, axes=axes)
         for name, file in poses.files.items()
     }
-    counts = {name: poses_within(each, odometry) for name, each in trajectories.items()}
+    counts = {name: poses_within(each.columns["t"], odometry) for name, each in tables.items()}
     lines = []
-    for name, trajectory in trajectories.items():
-        write_csv_table(folder / f"{name}.csv", pose_columns(trajectory))
-        file = poses.files[name]
+    for name, table in tables.items():
+        write_csv_table(folder / f"{name}.csv", table.columns)
         lines.append(
-            f"  {name}.csv: {len(trajectory)} rows from {file}, {counts[name]} of them within the "
-            "odometry"
+            f"  {name}.csv: {len(table.columns['t'])} rows from {poses.files[name]}, "
+            f"{counts[name]} of them within the odometry"
         )
-        if name == "pose" and "pose" not in read_settings(folder).get("sensors", {}):
+        lines += [f"  {note}" for note in table.notes]
+        if table.origin is not None:
+            lines.append(f"  {write_origin(folder, table.origin)}")
+        if name == "pose" and "pose" not in settings.get("sensors", {}):
             lines.append(f"  {PLACE}")
-        doubt = doubt_of_axes(trajectory)
-        if doubt:
-            click.echo(f"Warning: {file}: {doubt}", err=True)
+        for said in table.said:
+            click.echo(said, err=True)
     return lines
 
 

@@ -86,3 +86,22 @@ def test_a_frame_that_no_fix_names_is_the_antenna_of_all(tmp_path):
     run, told = imported(tmp_path / "run", path, reference__frame="mast")
     assert len(run.pose) == 100
     assert not told.losses
+
+
+def test_places_beyond_the_poles_are_dropped(tmp_path):
+    bag = drive()
+    for number in range(100):
+        latitude = 148.0 if number == 50 else 48 + number * NORTH_DEG
+        bag.fix(number / 10, latitude, 11.0, 500.0)
+    run, said = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert len(run.pose) == 99
+    assert any("dropped: no place on Earth" in line for line in said.losses)
+
+
+def test_a_height_that_is_not_measured_stays_empty(tmp_path):
+    bag = drive()
+    for number in range(100):
+        bag.fix(number / 10, 48 + number * NORTH_DEG, 11.0, np.nan if number % 2 else 500.0)
+    run, _ = imported(tmp_path / "run", bag.write(tmp_path / "drive"))
+    assert np.isnan(run.pose["z"][1::2]).all()
+    assert run.pose["z"][::2] == pytest.approx(0, abs=1e-3)

@@ -185,3 +185,14 @@ def test_where_the_speed_is_constant_delays_are_not_checked():
     run = without_yaw(drive(np.full(4000, 0.7), np.full(4000, 0.1)))
     skipped = check_recording(run).skipped
     assert "poses without yaw: headings and delays were not checked against them" in skipped
+
+
+@pytest.mark.parametrize("origin", [None, [48.1, 11.5]])
+def test_mirrored_positions_of_a_receiver_are_exchanged_columns(origin):
+    run = without_yaw(turning_all_round())
+    source = {} if origin is None else {"source": {"origin": origin}}
+    run = replace(run, settings={**run.settings, **source})
+    run = put(run, "pose", x=run.pose["y"], y=run.pose["x"])
+    (found,) = check_recording(run).at(Level.WARNING)
+    assert found.name == "pose_mirrored"
+    assert ("latitude and longitude are exchanged" in found.line) == (origin is not None)

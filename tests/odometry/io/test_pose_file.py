@@ -40,9 +40,9 @@ def test_every_pose_is_a_row(tmp_path):
 
 
 def test_poses_of_another_clock_are_refused():
-    assert poses_within(driving(np.linspace(99, 104, 11)), odometry(100, 110)) == 9
+    assert poses_within(np.linspace(99, 104, 11), odometry(100, 110)) == 9
     with pytest.raises(TrajectoryError, match=r"99.000 to 104.000 s.* 0.000 to 60.000 s"):
-        poses_within(driving(np.linspace(99, 104, 11)), odometry(0, 60))
+        poses_within(np.linspace(99, 104, 11), odometry(0, 60))
 
 
 def test_poses_of_a_camera_are_doubted():
