@@ -12,9 +12,12 @@ from terrain.checks.fixed_parts import ROBOT_IN_IMAGES
 from terrain.errors import PatchError
 
 # Findings by which images show other terrain than that ahead of the robot at their stamps: each
-# label would be wrong, and some of them sure
+# label would be wrong, and some of them sure; or are black but for a few grey levels
 ELSEWHERE = frozenset(
-    {"images_unrelated", "images_unordered", "images_reversed", "images_upside_down"}
+    {
+        *("images_unrelated", "images_unordered", "images_reversed", "images_upside_down"),
+        *("images_12_bit", "images_few_bits"),
+    }
 )
 # ... and by which some of them do, or show nothing
 OF_STRETCHES = frozenset({"images_frozen", "images_blank", "images_lost_details"})

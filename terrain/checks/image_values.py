@@ -8,6 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
 from odometry.checks.findings.finding import Finding, Level, counted
+from terrain.image_depth import bits_held, in_words
 from terrain.images import to_grey
 
 MOST = 0.5  # share of the images of which something must hold
@@ -100,24 +101,21 @@ def image_values(found: Sequence[Values]) -> Iterator[Finding]:
 
 def _deep(deep: Sequence[Values]) -> Finding:
     largest = max(values.largest for values in deep)
-    bits = max(largest.bit_length(), 1)
-    seen = f"{counted(len(deep), 'image')} of 16 bits, where the largest value is {largest}"
-    if bits > 14:
+    bits = bits_held(largest)
+    if bits is None:
         return Finding(
             "images_16_bit",
             Level.NOTE,
-            seen,
+            f"{counted(len(deep), 'image')} of 16 bits, where the largest value is {largest}",
             "The camera stores 16 bits",
             "Nothing to do: they are read as 8 bits, 65535 as 255",
         )
-    usual = next(depth for depth in (8, 10, 12, 14) if bits <= depth)
     return Finding(
-        "images_12_bit" if usual == 12 else "images_few_bits",
+        "images_12_bit" if bits == 12 else "images_few_bits",
         Level.WARNING,
-        f"{seen}: read as 16 bits, where 65535 is white, they have at most {largest // 257} of "
-        "256 grey levels",
-        f"The files hold {usual}-bit data in 16-bit images: far too dark when read as 16 bit",
-        f"Multiply the values by {2 ** (16 - usual)}, or store 8 bits",
+        in_words(len(deep), largest),
+        f"The files hold {bits}-bit data in 16-bit images: far too dark when read as 16 bit",
+        f"Multiply the values by {2 ** (16 - bits)}, or store 8 bits",
     )
 
 

@@ -20,7 +20,8 @@ from terrain.classification.photographs.patches import (
 from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
 from terrain.classification.photographs.trained_on import TrainedOn
 from terrain.classification.training import Training
-from terrain.errors import PatchError
+from terrain.errors import ImageError, PatchError
+from terrain.image_depth import check_depth
 
 CLEAR = 2.0  # standard errors
 ALONE, MIXED, OLD = "the new photographs alone", "both mixed", "the old model as it is"
@@ -89,6 +90,7 @@ def adapt(
     if old.old_samples_ is None:
         raise PatchError("the old model holds no samples (version 0.9, or chen2023): train it anew")
     photos = find_photos(Path(root))
+    check_depth([photo.path for photo in photos], ImageError)
     check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
     patches = load_patches(photos, old.patch_size_px)
     single = min(Counter(photo.label for photo in photos).values()) < 2

@@ -14,6 +14,8 @@ from terrain.classification.photographs.patches import (
     stated_metres_per_pixel,
 )
 from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
+from terrain.errors import ImageError
+from terrain.image_depth import check_depth
 
 LARGEST_PATCH_PX = 128
 
@@ -91,7 +93,7 @@ def train(
     PatchError
         If the folder does not have the documented format, or too few photographs of a class.
     ImageError
-        If a photograph cannot be read.
+        If a photograph cannot be read, or photographs of 16 bits hold fewer.
     ExtraError, BatchError
         If there is a scheduler and Dask is not installed, or the cluster cannot do it.
 
@@ -105,6 +107,7 @@ def train(
     """
     root = Path(root)
     photos = find_photos(root)
+    check_depth([photo.path for photo in photos], ImageError)
     check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
     size_px = patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos))
     patches = load_patches(photos, size_px)

@@ -35,9 +35,11 @@ def print_held_out(
     from terrain.classification.held_out import answer_photos, held_out_score
     from terrain.classification.photographs.patches import SUFFIXES, find_photos
     from terrain.classification.photographs.photo_faults import unread_note
-    from terrain.errors import PatchError
+    from terrain.errors import ImageError, PatchError
+    from terrain.image_depth import check_depth
 
     photos = find_photos(folder)
+    check_depth([photo.path for photo in photos], ImageError)
     if unread := unread_note([photo.path for photo in photos], SUFFIXES):
         click.echo(f"Note: {unread}", err=True)
     answers, unusable = answer_photos(classifier, photos)

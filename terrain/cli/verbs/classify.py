@@ -59,6 +59,8 @@ def classify(
         print_unnamed,
         readable,
     )
+    from terrain.errors import ImageError
+    from terrain.image_depth import check_depth
 
     classifier = TerrainClassifier.load(model)
     folders = [path for path in images if path.is_dir()]
@@ -73,6 +75,7 @@ def classify(
     if folders:
         all_used = print_held_out(classifier, model, folders[0], as_json=as_json)
     else:
+        check_depth(images, ImageError)
         likeness = classifier.likeness(readable(images))
         rows = [_row(classifier, path, likeness) for path in images]
         print_likeness(likeness, classifier.noticed_share_)
