@@ -140,11 +140,15 @@ def poses_of(
 ) -> FloatArray:
     """Poses (N, 4, 4) of positions (N, 3) and quaternions (N, 4) that stand in rows (N,) of a file.
 
+    Quaternions that are all zero are of a program that has positions alone: no rotation.
+
     Raises
     ------
     TrajectoryError
         Naming the row, if a quaternion is not of length 1.
     """
+    if not quaternions_wxyz.any():
+        quaternions_wxyz = np.tile([1.0, 0.0, 0.0, 0.0], (len(rows), 1))
     lengths = np.linalg.norm(quaternions_wxyz, axis=1)
     off = np.flatnonzero(np.abs(lengths - 1) > LENGTH_TOLERANCE)
     if off.size:

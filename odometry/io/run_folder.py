@@ -1,4 +1,4 @@
-"""Read and write run folders: the only door in; trajectories from elsewhere as their poses."""
+"""Read and write run folders: the only door in."""
 
 import os
 import shlex
@@ -7,16 +7,14 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import tomli_w
 
-from odometry.arrays import AnyArray, FloatArray
-from odometry.errors import RunFolderError, TrajectoryError
+from odometry.arrays import AnyArray
+from odometry.errors import RunFolderError
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write, leads_out
 from odometry.io.structured import read_toml
 from odometry.table import Table
-from odometry.trajectory import SpatialTrajectory
 
 # file: (is it required, columns it must have, columns with a number in every row)
 FILES = {
@@ -31,8 +29,6 @@ FILES = {
 SUFFIXES = (".bag", ".mcap", ".db3", ".active")
 PACKED = (".zstd", ".zst")
 MOST_ENTRIES = 1000  # of a folder that are listed
-ZONE_S, MOST_ZONE_S = 900.0, 14 * 3600.0  # time zones differ by whole quarters of an hour
-LEVEL = 0.2  # height of a path over its extent: below, z points up
 
 
 def read_settings(folder: Path) -> dict[str, Any]:
@@ -92,8 +88,7 @@ def write_run_folder(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from pathlib import Path
-    >>> import numpy as np
-    >>> import odometry
+    >>>     >>> import odometry
     >>> ahead = {"t": np.array([0.0, 1.0]), "v_left": np.full(2, 0.5), "v_right": np.full(2, 0.5)}
     >>> settings = {"robot": {"track_width": 0.4}}
     >>> with TemporaryDirectory() as folder:
@@ -119,80 +114,6 @@ def _check_image_files(folder: Path, images: Table) -> None:
             raise RunFolderError(f"{where}: {name!r} leads out of the folder {folder}")
         if not os.path.isfile(folder / name):  # noqa: PTH113 - Path.is_file raises on long names
             raise RunFolderError(f"{where}: {name!r} is not a file in {folder}")
-
-
-def pose_columns(trajectory: SpatialTrajectory) -> dict[str, AnyArray]:
-    """Columns of pose.csv by name: t, x, y, yaw, z, roll, pitch."""
-    x, y, z = trajectory.positions_m.T
-    roll, pitch, yaw = trajectory.roll_pitch_yaw.T
-    return {
-        "t": trajectory.stamps_s,
-        "x": x,
-        "y": y,
-        "yaw": yaw,
-        "z": z,
-        "roll": roll,
-        "pitch": pitch,
-    }
-
-
-def poses_within(stamps_s: FloatArray, odometry: Table) -> int:
-    """How many poses, of stamps (N,), lie within the odometry of a run.
-
-    Raises
-    ------
-    TrajectoryError
-        If none does: other clocks, or another run.
-    """
-    first_s, last_s = odometry.stamps_s[[0, -1]]
-    within = int(np.sum((stamps_s >= first_s) & (stamps_s <= last_s)))
-    if not within:
-        raise TrajectoryError(
-            f"the poses are of {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, {odometry.file} of "
-            f"{first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
-            f"{_another_zone(stamps_s, odometry.stamps_s)}"
-        )
-    return within
-
-
-def _another_zone(stamps_s: FloatArray, of_odometry_s: FloatArray) -> str:
-    """What is said where stamps (N,) begin near those of the odometry but for a time zone."""
-    ahead_s = float(stamps_s[0] - of_odometry_s[0])
-    quarters = round(ahead_s / ZONE_S)
-    if not 0 < abs(quarters) * ZONE_S <= MOST_ZONE_S:
-        return ""
-    moved_s = stamps_s - quarters * ZONE_S
-    if moved_s[0] > of_odometry_s[-1] or moved_s[-1] < of_odometry_s[0]:
-        return ""
-    hours = quarters * ZONE_S / 3600
-    return (
-        f". They share time where the poses are moved by {-hours:+g} hours: are they in another "
-        "time zone than the odometry?"
-    )
-
-
-def travel_axis(trajectory: SpatialTrajectory) -> int:
-    """Axis of the body (0 is x) along which it moves most; 0 where nothing moves."""
-    moved = np.diff(trajectory.positions_m, axis=0)
-    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
-    return int(np.argmax(np.sum(body**2, axis=0)))
-
-
-def doubt_of_axes(trajectory: SpatialTrajectory) -> str:
-    """Why a trajectory seems not to have robot axes; empty where it seems to.
-
-    A skid-steer robot moves most along x of its body.
-    """
-    if (axis := travel_axis(trajectory)) == 0:
-        return ""
-    doubt = f"the body moves most along its {'xyz'[axis]} axis; expected x forward."
-    extent_m = np.ptp(trajectory.positions_m, axis=0)
-    if axis == 1 or extent_m[2] < LEVEL * extent_m[:2].max():
-        body = "a sensor whose own axes are turned"
-        if axis != 1:
-            body = "a camera's optical frame (z along the viewing direction) in a map whose z is up"
-        return f"{doubt} Poses of {body}: write those of the robot's base frame"
-    return f"{doubt} Poses of a camera (z along the viewing direction, y down) need --axes optical"
 
 
 def is_named_bag(path: Path) -> bool:

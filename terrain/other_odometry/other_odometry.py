@@ -16,9 +16,9 @@ from odometry.evaluation.other_odometry import LONGEST_GAP_S, Judge, OtherScore,
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import Score
 from odometry.io.csv_table import read_csv_table
-from odometry.io.run_folder import doubt_of_axes, travel_axis
 from odometry.io.structured import read_json
 from odometry.io.trajectory_files import OPTICAL, format_of, read_trajectory
+from odometry.io.trajectory_poses import doubt_of_axes, travel_axis
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
 from terrain.other_odometry.other_headings import PoseFault, other_readings, pose_fault

@@ -85,7 +85,8 @@ def write_poses(folder: Path, poses: PoseFiles) -> list[str]:
     """
     from odometry.fixes.origin import write_origin
     from odometry.io.csv_table import write_csv_table
-    from odometry.io.run_folder import poses_within, read_settings, read_tables
+    from odometry.io.run_folder import read_settings, read_tables
+    from odometry.io.trajectory_poses import poses_within
     from terrain.cli.verbs.pose_tables import read_pose_table
 
     odometry = read_tables(folder)["odometry"]

@@ -15,6 +15,8 @@ from odometry.fixes.local_metres import LocalMetres, Origin
 from odometry.fixes.origin import stated_origin
 from odometry.table import Table
 
+NO_YAW = "all of its rotations are the same: they are not measured, and yaw is left empty"
+
 
 @dataclass(frozen=True)
 class PoseTable:
@@ -40,21 +42,29 @@ def read_pose_table(
     Raises
     ------
     TrajectoryError
-        If the file cannot be read; of latitude and longitude as truth, which needs yaw.
+        If the file cannot be read; of positions without yaw as truth.
     """
     from odometry.fixes.fixes import read_fixes
-    from odometry.io.run_folder import doubt_of_axes, pose_columns
     from odometry.io.trajectory_files import read_trajectory
+    from odometry.io.trajectory_poses import doubt_of_axes, pose_columns
 
     fixes = read_fixes(file, odometry)
     if fixes is None:
         trajectory = read_trajectory(file, times=times, axes=axes)
         doubt = doubt_of_axes(trajectory)
         said = (f"Warning: {file}: {doubt}",) if doubt else ()
-        return PoseTable(pose_columns(trajectory), (), said)
+        columns = pose_columns(trajectory)
+        if np.isfinite(columns["yaw"]).all():
+            return PoseTable(columns, (), said)
+        _refuse_truth(name, file)
+        return PoseTable(columns, (NO_YAW,), said)
+    _refuse_truth(name, file)
+    return _local(file, fixes, stated_origin(settings.get("source")))
+
+
+def _refuse_truth(name: str, file: Path) -> None:
     if name == "truth":
         raise TrajectoryError(f"{file}: positions have no yaw, which truth.csv needs; give --pose")
-    return _local(file, fixes, stated_origin(settings.get("source")))
 
 
 def _local(file: Path, fixes: Fixes, stated: list[float] | None) -> PoseTable:

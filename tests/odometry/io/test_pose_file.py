@@ -10,8 +10,8 @@ from odometry.errors import TrajectoryError
 from odometry.geometry import se3
 from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from odometry.io.csv_table import read_csv_table, write_csv_table
-from odometry.io.run_folder import doubt_of_axes, pose_columns, poses_within
 from odometry.io.trajectory_files import to_optical
+from odometry.io.trajectory_poses import doubt_of_axes, pose_columns, poses_within
 from odometry.table import Table
 from odometry.trajectory import SpatialTrajectory
 
@@ -59,3 +59,27 @@ def test_a_camera_in_a_map_whose_z_is_up_is_not_sent_to_optical_axes():
     assert "base frame" in said
     assert "--axes" not in said
     assert "--axes optical" in doubt_of_axes(to_optical(moving))
+
+
+@pytest.mark.parametrize("of", [None, [0.0, 0.0, 1.2]])
+def test_one_rotation_in_all_rows_is_no_yaw(of):
+    moving = driving(np.linspace(0, 5, 11))
+    turn = np.eye(3) if of is None else se3.rotation_from_roll_pitch_yaw(np.array([of]))[0]
+    columns = pose_columns(SpatialTrajectory(moving.stamps_s, se3.pose(moving.positions_m, turn)))
+    assert list(columns) == ["t", "x", "y", "yaw", "z"]
+    assert np.isnan(columns["yaw"]).all()
+
+
+def test_a_straight_drive_along_x_keeps_its_yaw():
+    stamps_s = np.linspace(0, 5, 11)
+    turn = se3.rotation_from_roll_pitch_yaw(np.array([[0.0, 0.0, 0.6]]))[0]
+    places = stamps_s[:, None] * turn[:, 0]
+    columns = pose_columns(SpatialTrajectory(stamps_s, se3.pose(places, turn)))
+    np.testing.assert_allclose(columns["yaw"], 0.6)
+
+
+def test_positions_of_a_camera_without_rotations_are_doubted():
+    moving = driving(np.linspace(0, 5, 11))
+    in_plane = SpatialTrajectory(moving.stamps_s, se3.pose(moving.positions_m, np.eye(3)))
+    assert doubt_of_axes(in_plane) == ""
+    assert "these need --axes optical" in doubt_of_axes(to_optical(in_plane))

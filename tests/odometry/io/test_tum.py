@@ -92,7 +92,7 @@ def test_yaw_of_a_tilted_quaternion(tmp_path):
         ("0 0 0 0 0 0 0 1\n1 2 3\n", ["row 2", "3"]),
         ("0 0 0 0 0 0 0 one\n", ["row 1", "qw", "one"]),
         ("0 0 0 0 0 0 0 1\n\n1 0 nan 0 0 0 0 1\n", ["row 3", "y", "nan", "finite"]),
-        ("0 0 0 0 0 0 0 0\n", ["row 1", "length 0", "expected 1"]),
+        ("0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 0\n", ["row 2", "length 0", "expected 1"]),
         ("0 0 0 0 0.5 0.5 0.5 0\n", ["row 1", "length 0.866025", "expected 1"]),
         ("# nothing\n", ["no pose"]),
         ("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", ["row 2", "1.0 after 1.0", "increase"]),

@@ -122,3 +122,19 @@ def test_the_manifest_of_an_imported_run_names_what_was_added(tmp_path):
     again = CliRunner().invoke(cli, list(map(str, made + size)))
     assert again.exit_code == 0, again.output
     assert not (tmp_path / "run" / "pose.csv").exists()
+
+
+@pytest.mark.parametrize("quaternion", ["0 0 0 1", "0 0 0 0"])
+def test_positions_without_rotations_have_no_yaw(run, tmp_path, quaternion):
+    folder, poses = run
+    rows = zip(poses.stamps_s, poses.poses[:, 0], poses.poses[:, 1], strict=True)
+    file = tmp_path / "positions.tum"
+    file.write_text("".join(f"{t:.6f} {x:.9f} {y:.9f} 0 {quaternion}\n" for t, x, y in rows))
+    assert "no yaw, which truth.csv needs" in str(call(folder, "--truth", file).exception)
+    answer = call(folder, "--pose", file)
+    assert answer.exit_code == 0, answer.output
+    assert "they are not measured, and yaw is left empty" in answer.output
+    assert "warning" not in answer.output
+    found = Run.read(folder).pose
+    assert np.isnan(found["yaw"]).all()
+    np.testing.assert_allclose(found["x"], poses.poses[:, 0], atol=1e-8)
