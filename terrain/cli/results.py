@@ -124,7 +124,7 @@ def print_written(out: Path) -> None:
 def learned_advice(
     result: "RunResult", run_folder: Path, out: Path, *, has_warnings: bool, preset: str | None
 ) -> str | None:
-    """One line on learned.toml; None where the run has learned nothing, or a preset refuses it.
+    """One line on learned.toml; None where there is none, or a preset refuses it.
 
     Parameters
     ----------
@@ -138,8 +138,10 @@ def learned_advice(
     """
     from terrain.result.evaluation_notes import misleading
 
-    if preset is not None or not result.has_learned:
+    if preset is not None or not result.learned.terrains:
         return None
+    if not result.has_learned:
+        return f"learned.toml holds the tables of --parameters: {_why_nothing(result)}"
     if has_warnings:
         return (
             "learned.toml is not recommended: the recording has warnings (terrain-odometry check "
@@ -151,4 +153,17 @@ def learned_advice(
         return (
             f"learned.toml is not recommended: the filter noticed {kinds} (see {out}/report.html)"
         )
-    return f"Next time: --parameters {out / 'learned.toml'} starts from what was learned"
+    before = result.parameters.terrains
+    kept = [name for name, of in result.learned.terrains.items() if of is before.get(name)]
+    stays = f" ({', '.join(kept)} as given)" if kept else ""
+    return f"Next time: --parameters {out / 'learned.toml'} starts from what was learned{stays}"
+
+
+def _why_nothing(result: "RunResult") -> str:
+    """Why a run left the tables of terrains as they were."""
+    if not result.replay.accepted.any():
+        return "nothing was learned, as no pose was used"
+    return (
+        "nothing was learned. They state smaller uncertainties than this run reaches, and stay, "
+        "whether they fit or not (a note says where they do not); or none was in force"
+    )

@@ -32,6 +32,8 @@ class SetAgainstPoses:
     windows : int
     turn, turn_sd, way, way_sd : float
         Ratios and their standard deviations; 1 where poses agree, NaN where they do not say.
+    by : str
+        "poses", or "gyroscope" of turns alone.
     """
 
     terrain: str
@@ -40,6 +42,7 @@ class SetAgainstPoses:
     turn_sd: float
     way: float
     way_sd: float
+    by: str = "poses"
 
     @property
     def turns_otherwise(self) -> bool:
@@ -69,10 +72,13 @@ def sentences(found: Sequence[SetAgainstPoses]) -> list[str]:
 def _sentence(one: SetAgainstPoses) -> str:
     parts = [f"turned {one.turn:.2f} +- {one.turn_sd:.2f} times"] * one.turns_otherwise
     parts += [f"went {one.way:.2f} +- {one.way_sd:.2f} times"] * one.goes_otherwise
+    learn = "Compare with gap, or learn them with identify"
+    if one.by == "gyroscope":
+        learn = "Or the gyroscope has another scale. Learn them with identify"
     return (
-        f"by the poses the robot {' and '.join(parts)} as far on {one.terrain!r} as its parameters "
-        f"say ({one.windows} windows of {HORIZON_M:g} m): they are of another robot, terrain or "
-        "weather, or it was not on this terrain. Compare with gap, or learn them with identify"
+        f"by the {one.by} the robot {' and '.join(parts)} as far on {one.terrain!r} as its "
+        f"parameters say ({one.windows} windows of {HORIZON_M:g} m): they are of another robot, "
+        f"terrain or weather, or it was not on this terrain. {learn}"
     )
 
 

@@ -29,7 +29,7 @@ def result(
         parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
         watcher=watcher,
         source=source,
-        run=SimpleNamespace(pose=None, terrain=None, began_s=1000.0),
+        run=SimpleNamespace(pose=None, yaw_rate=None, terrain=None, began_s=1000.0),
         replay=SimpleNamespace(
             innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
             accepted=np.array([False] * 5 + [True] * 10 + [False] * refused),
