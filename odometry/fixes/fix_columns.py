@@ -21,7 +21,8 @@ LATITUDE = re.compile(rf"{OF}(?:lat|latitude){ANGLE}")
 LONGITUDE = re.compile(rf"{OF}(?:lon|lng|long|longitude){ANGLE}")
 ALTITUDE = re.compile(rf"{OF}(?:alt|altitude|height|elevation|ele)(?:_msl)?(?:_(?P<unit>m|mm))?")
 STAMP = re.compile(
-    rf"{OF}(?:t|time|timestamp|stamp|utc|date_?time|epoch|seconds|secs?|seconds_elapsed)(?:_utc)?"
+    rf"{OF}(?:t|time|timestamp|stamp|utc|date_?time|epoch|unix|i?tow|secs?|seconds(?:_elapsed)?)"
+    r"(?:_utc)?"
     r"_?(?P<unit>s|sec|secs|seconds|ms|msec|us|usec|ns|nsec)?"
 )
 WHOLE = re.compile(r"(?P<of>.*?)secs?")  # seconds of a stamp whose nanoseconds are another column

@@ -9,19 +9,14 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import TrajectoryError
 from odometry.fixes.degrees import far_away, in_degrees, rounded
-from odometry.fixes.fix_columns import Named
 from odometry.fixes.fix_file import FixFile, read_fix_file
+from odometry.fixes.fix_states import kinds, no_fix
 from odometry.fixes.local_metres import on_earth, zeros_within_deg
 from odometry.table import Table
 
-NO_FIX = frozenset({"v", "void", "no fix", "no_fix", "nofix", "invalid", "false"})
-# The least number that is a fix: NavSatFix has -1 for none; receivers count kinds of fix with 2
-# and 3 for two and three dimensions; NMEA's quality is 0 for none
-LEAST = {"navsat": 0, "kind": 2, "quality": 1, "flag": 1}
 # A log that is faster than its receiver holds each place for nearly the same number of rows; a
 # rounded place stays for as long as the robot needs to leave it
 HELD, EVENLY = 0.5, 0.8  # shares of the rows that repeat a place, and of even holds
-MOST_NAVSAT = 2  # of the status of NavSatFix: with larger numbers it is a kind of fix
 
 
 @dataclass(frozen=True)
@@ -68,7 +63,7 @@ def read_fixes(file: Path, odometry: Table | None = None) -> Fixes | None:
     kept = np.asarray(np.isfinite(angles).all(axis=1))
     _lose(losses, ~kept, "without latitude or longitude", found)
     for state in found.columns.states:
-        none = _no_fix(found, state)
+        none = no_fix(found, state)
         _lose(losses, none & kept, f"without a fix ({state.column!r} says so)", found)
         kept &= ~none
     if not kept.any():
@@ -89,6 +84,7 @@ def read_fixes(file: Path, odometry: Table | None = None) -> Fixes | None:
     angles[:, 1] = (angles[:, 1] + 180) % 360 - 180
     notes = [f"stamps: {words}"]
     notes += [f"latitude and longitude are read as {unit}"] if unit else []
+    notes += filter(None, (kinds(found, state, kept) for state in found.columns.states))
     digits = "" if unit else rounded(angles[kept])
     notes += [note for note in (altitude_note, digits) if note]
     places = np.column_stack([angles, altitudes_m])[kept]
@@ -100,24 +96,20 @@ def _stamps(found: FixFile, odometry: Table | None) -> tuple[FloatArray, str]:
     if odometry is None:
         return found.stamps_s(found.columns.stamps[0])
     begin_s, end_s = odometry.stamps_s[[0, -1]].tolist()
-    all_stamps = [found.stamps_s(of, end_s - begin_s) for of in found.columns.stamps]
-    for stamps_s, words in all_stamps:
+    others: list[tuple[FloatArray, str]] = []
+    errors: list[TrajectoryError] = []
+    for of in found.columns.stamps:
+        try:
+            stamps_s, words = found.stamps_s(of, end_s - begin_s)
+        except TrajectoryError as error:
+            errors.append(error)
+            continue
         if ((stamps_s >= begin_s) & (stamps_s <= end_s)).any():
             return stamps_s, words
-    return all_stamps[0]
-
-
-def _no_fix(found: FixFile, state: Named) -> BoolArray:
-    """Rows (N,) of which a column says that there was no fix."""
-    cells = found.cells[state.column]
-    texts = [cell.lower() for cell in cells if not _is_number(cell)]
-    if any(texts):
-        return np.array([cell.lower() in NO_FIX for cell in cells])
-    values = found.numbers(state.column)
-    kind = state.says
-    if kind == "navsat" and np.nanmax(values, initial=0) > MOST_NAVSAT:
-        kind = "kind"
-    return np.asarray(values < LEAST.get(kind, 0))
+        others.append((stamps_s, words))
+    if not others:
+        raise errors[0]
+    return others[0]
 
 
 def _no_places(degrees: FloatArray, kept: BoolArray) -> Iterator[tuple[BoolArray, str]]:
@@ -177,11 +169,3 @@ def _lose(losses: list[str], wrong: BoolArray, why: str, found: FixFile) -> None
     if wrong.any():
         first = int(found.lines[int(np.argmax(wrong))])
         losses.append(f"{np.count_nonzero(wrong)} of {len(wrong)} rows {why}, row {first} first")
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell or "nan")
-    except ValueError:
-        return False
-    return True

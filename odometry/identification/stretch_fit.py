@@ -227,28 +227,3 @@ def length_for(noise: StretchNoise, of: Stretches) -> float:
     for_noise_m = LINE * noise.position_m / np.array([DIRECTION_RAD, COARSE_RAD])
     wanted_m = min(for_noise_m[0], max(for_noise_m[1], share_m))
     return float(np.clip(wanted_m, np.clip(share_m, LEAST_M, usual_m), MOST_M))
-
-
-def position_notes(fit: Fit) -> tuple[str, ...]:
-    """Sentences: what a fit to positions is based on, and what positions do not determine."""
-    of, noise = fit.windows, fit.noise
-    if noise is None or not isinstance(of, Stretches):
-        return ()
-    turns = "the treads alone" if of.turns_rad is None else "the gyroscope"
-    basis = (
-        f"positions without yaw: the shapes of {len(of)} stretches of {of.travel_m.mean():.1f} m "
-        f"count, for positions with a noise of {noise.position_m:.2g} m; between positions the "
-        f"yaw is carried by {turns}"
-    )
-    if of.arm_stated:
-        return (
-            basis,
-            "[sensors] pose says where the antenna sits: where it is off, x_icr, y_left and "
-            "y_right are off by as much, and their intervals do not hold that",
-        )
-    return (
-        basis,
-        "[sensors] pose is not stated, so the antenna is taken to be at the robot's origin; an "
-        "antenna ahead of it looks exactly like a smaller x_icr, one to the left like smaller "
-        "y_left and y_right",
-    )

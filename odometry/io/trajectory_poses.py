@@ -8,6 +8,7 @@ from odometry.table import Table
 from odometry.trajectory import SpatialTrajectory
 
 ZONE_S, MOST_ZONE_S = 900.0, 14 * 3600.0  # time zones differ by whole quarters of an hour
+GPS_S, WEEK_S = 315_964_800.0 - 18.0, 604_800.0  # from 1970, less the leap seconds since 2017
 SAME_ROTATION = 1e-6  # of an entry of a matrix
 ALONG = 1e-3  # of the way along: noise, and any bend, is larger
 LEVEL = 0.2  # height of a path over its extent: below, z points up
@@ -47,25 +48,29 @@ def poses_within(stamps_s: FloatArray, odometry: Table) -> int:
         raise TrajectoryError(
             f"the poses are of {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, {odometry.file} of "
             f"{first_s:.3f} to {last_s:.3f} s; expected stamps of one clock"
-            f"{_another_zone(stamps_s, odometry.stamps_s)}"
+            f"{_another_clock(stamps_s, odometry.stamps_s)}"
         )
     return within
 
 
-def _another_zone(stamps_s: FloatArray, of_odometry_s: FloatArray) -> str:
-    """What is said where stamps (N,) begin near those of the odometry but for a time zone."""
-    ahead_s = float(stamps_s[0] - of_odometry_s[0])
-    quarters = round(ahead_s / ZONE_S)
-    if not 0 < abs(quarters) * ZONE_S <= MOST_ZONE_S:
-        return ""
-    moved_s = stamps_s - quarters * ZONE_S
-    if moved_s[0] > of_odometry_s[-1] or moved_s[-1] < of_odometry_s[0]:
-        return ""
-    hours = quarters * ZONE_S / 3600
-    return (
-        f". They share time where the poses are moved by {-hours:+g} hours: are they in another "
-        "time zone than the odometry?"
-    )
+def _another_clock(stamps_s: FloatArray, of_odometry_s: FloatArray) -> str:
+    """What is said where stamps (N,) fit those of the odometry but for a zone, or GPS time."""
+    behind_s = float(of_odometry_s[0] - stamps_s[0])
+    zone_s = round(behind_s / ZONE_S) * ZONE_S
+    gps_s = GPS_S + round((behind_s - GPS_S) / WEEK_S) * WEEK_S
+    share = "They share time where the poses are moved by"
+    if 0 < abs(zone_s) <= MOST_ZONE_S and _share_time(stamps_s + zone_s, of_odometry_s):
+        return (
+            f". {share} {zone_s / 3600:+g} hours: are they in another time zone than the odometry?"
+        )
+    if gps_s >= GPS_S and _share_time(stamps_s + gps_s, of_odometry_s):
+        since = "6 January 1980" if gps_s == GPS_S else "the start of a week"
+        return f". {share} {gps_s:+.0f} s: they are GPS time, which counts from {since}"
+    return ""
+
+
+def _share_time(stamps_s: FloatArray, of_odometry_s: FloatArray) -> bool:
+    return bool(stamps_s[0] <= of_odometry_s[-1] and stamps_s[-1] >= of_odometry_s[0])
 
 
 def travel_axis(trajectory: SpatialTrajectory) -> int:

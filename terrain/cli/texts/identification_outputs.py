@@ -79,9 +79,9 @@ def write_ros(ros: Path, runs: "Sequence[Run]", found: "Identification", comment
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
     from odometry.identification.plausibility import notes, short_windows, turns_outside
+    from odometry.identification.position_notes import position_notes
     from odometry.identification.report import report
     from odometry.identification.shorter_windows import shortened
-    from odometry.identification.stretch_fit import position_notes
     from odometry.windows.record import words
 
     for name, of_terrain in found.terrains.items():

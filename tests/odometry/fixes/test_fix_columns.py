@@ -16,6 +16,7 @@ PLOTJUGGLER = "__time,/gps/fix/latitude,/gps/fix/longitude,/gps/fix/altitude"
 PHONE = '"Time (s)","Latitude (°)","Longitude (°)","Height (m)","Horizontal Accuracy (m)"'
 FLIGHT = "timestamp,time_utc_usec,lat,lon,alt,alt_ellipsoid,eph,fix_type,satellites_used"
 ANDROID = "time,lat,lon,elevation,accuracy,bearing,speed,satellites,provider,hdop"
+UBLOX = "iTOW_ms,unix_ms,fixType,lat,lon,height,hAcc"
 ARDUPILOT = "TimeUS,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd"
 
 
@@ -33,6 +34,7 @@ ARDUPILOT = "TimeUS,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd"
         (PHONE, "Latitude (°)", ["Time (s)"], []),
         (FLIGHT, "lat", ["timestamp", "time_utc_usec"], ["fix_type"]),
         (ANDROID, "lat", ["time"], []),
+        (UBLOX, "lat", ["iTOW_ms", "unix_ms"], ["fixType"]),
         (ARDUPILOT, "Lat", ["TimeUS"], ["Status"]),
     ],
 )

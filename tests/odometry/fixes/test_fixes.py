@@ -102,6 +102,15 @@ def test_of_several_stamps_those_of_the_clock_of_the_odometry(tmp_path):
     expect_usual(read_fixes(written(tmp_path, columns), odometry))
 
 
+def test_columns_that_are_no_stamps_after_all_are_passed_over(tmp_path):
+    columns = {"utc_time": ["noon"] * ROWS, **usual()}
+    odometry = Table(Path("odometry.csv"), {"t": STAMPS_S}, np.arange(ROWS))
+    expect_usual(read_fixes(written(tmp_path, columns), odometry))
+    columns.pop("time")
+    with pytest.raises(TrajectoryError, match=r"row 2, column 'utc_time': 'noon' is not a number"):
+        read_fixes(written(tmp_path, columns), odometry)
+
+
 def test_whole_numbers_and_millimetres_of_a_receiver(tmp_path):
     columns = usual(
         latitude=[f"{value * 1e7:.0f}" for value in LATITUDES],
@@ -258,3 +267,11 @@ def test_places_that_are_rounded_stay(tmp_path):
     found = read_fixes(written(tmp_path, columns))
     assert not found.losses
     assert "its degrees have 5 decimals, steps of 1.1 m: write 7 or more" in found.notes
+
+
+def test_kinds_of_fixes_are_counted(tmp_path):
+    kinds = ["4"] * 30 + ["5"] * 8 + ["0"] * 2
+    found = read_fixes(written(tmp_path, usual(fix_quality=kinds)))
+    note = "'fix_quality' is 4 in 30, 5 in 8 rows: fixes of several kinds, whose errors differ"
+    assert note in found.notes
+    assert not any("kinds" in note for note in read_fixes(written(tmp_path, usual())).notes)

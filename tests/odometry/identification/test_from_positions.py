@@ -7,9 +7,10 @@ import pytest
 
 from odometry.errors import IdentificationError
 from odometry.identification.identify import identify
+from odometry.identification.position_notes import UNNOTICED_S, position_notes
 from odometry.identification.profile import with_profiles
 from odometry.identification.start import SolverConfig
-from odometry.identification.stretch_fit import position_notes, windows_or_stretches
+from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
@@ -73,6 +74,17 @@ def test_an_antenna_that_is_not_stated_looks_like_shifted_icrs():
     aside = fit_of(replace(emptied(drive(5, arm_m=(0.0, 0.2))), settings={})).values
     for name in ("y_left", "y_right"):
         assert aside[name] == pytest.approx(ICR[name] - 0.2, abs=5e-3), name
+
+
+@pytest.mark.parametrize("gyroscope", [False, True])
+def test_late_stamps_look_like_the_x_icr_that_the_note_says(gyroscope):
+    run = emptied(drive(6, gyroscope=gyroscope, noise_m=0.01))
+    stamps_s = run.pose.stamps_s + UNNOTICED_S
+    late = replace(run, pose=replace(run.pose, columns={**run.pose.columns, "t": stamps_s}))
+    exact, found = fit_of(run), fit_of(late)
+    note = position_notes(found)[-1]
+    stated_m = float(note.partition("larger by ")[2].partition(" m")[0])
+    assert found.values["x_icr"] - exact.values["x_icr"] == pytest.approx(stated_m, rel=0.3)
 
 
 def test_a_bias_of_the_gyroscope_is_found():

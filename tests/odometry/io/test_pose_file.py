@@ -83,3 +83,15 @@ def test_positions_of_a_camera_without_rotations_are_doubted():
     in_plane = SpatialTrajectory(moving.stamps_s, se3.pose(moving.positions_m, np.eye(3)))
     assert doubt_of_axes(in_plane) == ""
     assert "these need --axes optical" in doubt_of_axes(to_optical(in_plane))
+
+
+@pytest.mark.parametrize(
+    ("begin_s", "since"),
+    [(1764510000 - 315964800 + 18, "6 January 1980"), (49218.0, "the start of a week"), (5.0, "")],
+)
+def test_gps_time_is_named(begin_s, since):
+    """1764510000 is 30 November 2025, a Sunday, 13:40 UTC: 49,200 s of the GPS week and 18 more."""
+    with pytest.raises(TrajectoryError) as refused:
+        poses_within(begin_s + np.arange(100.0), odometry(1764510000.0, 1764510300.0))
+    assert ("GPS time" in str(refused.value)) == bool(since)
+    assert since in str(refused.value)
