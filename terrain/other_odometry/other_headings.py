@@ -19,6 +19,7 @@ FEWEST_TURNS = 10
 FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
 MOST_RATIO = 10.0  # of its turns to the odometer's: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
+TILTED_DEG = 50.0  # no skid-steer robot drives there
 # by format: shift that takes w, x, y, z as read to the other order, and both orders in words
 OTHER_ORDERS = {
     "tum": (-1, "in the order qw qx qy qz", "qx qy qz qw"),
@@ -64,14 +65,45 @@ def other_readings(spatial: SpatialTrajectory, named: str) -> dict[str, FloatArr
     if named not in OTHER_ORDERS:
         return {}
     optical = from_optical(spatial).plane.poses[:, 2]
-    shift, seems, wanted = OTHER_ORDERS[named]
-    wxyz = np.roll(spatial.quaternions_wxyz, shift, axis=1)
-    turned = se3.pose(spatial.positions_m, se3.rotation_from_quaternion_wxyz(wxyz))
-    yaw = SpatialTrajectory(spatial.stamps_s, turned).roll_pitch_yaw[:, 2]
+    _, seems, wanted = OTHER_ORDERS[named]
     return {
-        f"its quaternions are {seems}, not {wanted} as the format has them": yaw,
+        f"its quaternions are {seems}, not {wanted} as the format has them": _reordered(
+            spatial, named
+        ).roll_pitch_yaw[:, 2],
         "its axes are those of a camera: --axes optical": optical,
     }
+
+
+def _reordered(spatial: SpatialTrajectory, named: str) -> SpatialTrajectory:
+    """A trajectory as it is where its quaternions have the other order."""
+    wxyz = np.roll(spatial.quaternions_wxyz, OTHER_ORDERS[named][0], axis=1)
+    turned = se3.pose(spatial.positions_m, se3.rotation_from_quaternion_wxyz(wxyz))
+    return SpatialTrajectory(spatial.stamps_s, turned)
+
+
+def order_fault(spatial: SpatialTrajectory, named: str) -> str:
+    """Why quaternions seem to have the other order, without any other sensor; "" where they do not.
+
+    As they are the body lies on its side or back in most rows, and in the other order it is never
+    tilted as no robot drives.
+    """
+    if named not in OTHER_ORDERS:
+        return ""
+    tilts_deg = _tilts_deg(spatial)
+    middle_deg = float(np.median(tilts_deg))
+    if middle_deg < TILTED_DEG or _tilts_deg(_reordered(spatial, named)).max() > TILTED_DEG:
+        return ""
+    _, seems, wanted = OTHER_ORDERS[named]
+    return (
+        f"the body is tilted by {middle_deg:.0f} degrees in the middle of its rows, and never by "
+        f"{TILTED_DEG:.0f} where its quaternions are {seems}; expected {wanted}. (Poses of a "
+        "camera need --axes optical.)"
+    )
+
+
+def _tilts_deg(spatial: SpatialTrajectory) -> FloatArray:
+    """Angles (N,) between the body's z and that of the map."""
+    return np.asarray(np.degrees(np.arccos(np.clip(spatial.poses[:, 2, 2], -1.0, 1.0))))
 
 
 def pose_fault(

@@ -42,15 +42,19 @@ def read_pose_table(
     Raises
     ------
     TrajectoryError
-        If the file cannot be read; of positions without yaw as truth.
+        If the file cannot be read, or its quaternions have another order; of positions without
+        yaw as truth.
     """
     from odometry.fixes.fixes import read_fixes
-    from odometry.io.trajectory_files import read_trajectory
+    from odometry.io.trajectory_files import OPTICAL, format_of, read_trajectory
     from odometry.io.trajectory_poses import doubt_of_axes, pose_columns
+    from terrain.other_odometry.other_headings import order_fault
 
     fixes = read_fixes(file, odometry)
     if fixes is None:
         trajectory = read_trajectory(file, times=times, axes=axes)
+        if axes != OPTICAL and (fault := order_fault(trajectory, format_of(file))):
+            raise TrajectoryError(f"{file}: {fault}")
         doubt = doubt_of_axes(trajectory)
         said = (f"Warning: {file}: {doubt}",) if doubt else ()
         columns = pose_columns(trajectory)

@@ -138,3 +138,22 @@ def test_positions_without_rotations_have_no_yaw(run, tmp_path, quaternion):
     found = Run.read(folder).pose
     assert np.isnan(found["yaw"]).all()
     np.testing.assert_allclose(found["x"], poses.poses[:, 0], atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "columns", "order"),
+    [("tum", [0, 1, 2, 3, 7, 4, 5, 6], "qw qx qy qz"), ("euroc", [0, 1, 2, 3, 5, 6, 7, 4], "qx")],
+)
+def test_quaternions_of_the_other_order_are_refused(run, tmp_path, name, columns, order):
+    folder, poses = run
+    all_round = poses.poses + np.linspace(0, 6, len(poses))[:, None] * [0, 0, 1]
+    turning = SpatialTrajectory.from_plane(Trajectory(poses.stamps_s, all_round))
+    (file,) = write_trajectory(tmp_path, "slam", turning, name)
+    separator = "," if name == "euroc" else " "
+    rows = [line.split(separator) for line in file.read_text().splitlines() if line[0] != "#"]
+    other = tmp_path / file.name.replace("slam", "other")
+    other.write_text("\n".join(separator.join(row[k] for k in columns) for row in rows))
+    answer = call(folder, "--pose", other)
+    assert f"where its quaternions are in the order {order}" in str(answer.exception)
+    assert not (folder / "pose.csv").exists()
+    assert call(folder, "--pose", file).exit_code == 0
