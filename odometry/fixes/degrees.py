@@ -67,9 +67,9 @@ def _no_degrees(angles: FloatArray) -> str:
 
 
 def rounded(degrees: FloatArray) -> str:
-    """A note on places (N, 2) that were written with few decimals; empty without."""
+    """A note on places (N, 2), one of whose angles was written with few decimals; else empty."""
     for decimals in range(ENOUGH):
-        if (np.round(degrees, decimals) == degrees).all():
+        if (np.round(degrees, decimals) == degrees).all(axis=0).any():
             step_m = DEG_M / 10**decimals
             return (
                 f"its degrees have {decimals} decimals, steps of {step_m:.2g} m: write {ENOUGH} or "

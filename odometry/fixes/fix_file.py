@@ -72,7 +72,13 @@ class FixFile:
         if named.says == "mm" or (of_whole_degrees and whole and named.says != "m"):
             values, note = values / 1000, f"{named.column!r} is read as millimetres"
         least_m, most_m = ALTITUDES_M
-        return np.where((values >= least_m) & (values <= most_m), values, np.nan), note
+        wrong = (values < least_m) | (values > most_m)
+        if wrong.any():
+            note = (
+                f"{named.column!r} is beyond {least_m:g} to {most_m:g} m in {wrong.sum()} rows, "
+                "where it is left out: another unit?"
+            )
+        return np.where(wrong, np.nan, values), note
 
     def stamps_s(
         self, of: Named | tuple[Named, Named], lasts_s: float | None = None
@@ -94,6 +100,11 @@ class FixFile:
         if is_date(first):
             zone = ", taken as UTC: no zone is named" if name_no_zone([first]) else ""
             return self._dates(of.column), f"{of.column!r}, dates{zone}"
+        if first and not is_number(first):
+            raise TrajectoryError(
+                f"{self.file}: row {self.lines[cells.index(first)]}, column {of.column!r}: "
+                f"{first!r} is neither a number nor a date with a time, as 2026-11-30T10:15:00.2Z"
+            )
         values = self.numbers(of.column)
         unit = unit_s(values, of.says, lasts_s)
         if unit is None:
@@ -144,6 +155,15 @@ def read_fix_file(file: Path) -> FixFile | None:
     if not lines:
         raise TrajectoryError(f"{file}: there are no rows below the header")
     return FixFile(file, columns, np.array(lines, dtype=np.int64), cells)
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number, or empty."""
+    try:
+        float(cell or "nan")
+    except ValueError:
+        return False
+    return True
 
 
 def _wanted(columns: FixColumns) -> set[str]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.fixes.fix_columns import Named
-from odometry.fixes.fix_file import FixFile
+from odometry.fixes.fix_file import FixFile, is_number
 
 NO_FIX = frozenset({"v", "void", "no fix", "no_fix", "nofix", "invalid", "false"})
 # The least number that is a fix: NavSatFix has -1 for none; receivers count kinds of fix with 2
@@ -19,7 +19,7 @@ MOST_NAVSAT = 2  # of the status of NavSatFix: with larger numbers it is a kind 
 def no_fix(found: FixFile, state: Named) -> BoolArray:
     """Rows (N,) of which a column says that there was no fix."""
     cells = found.cells[state.column]
-    texts = [cell.lower() for cell in cells if not _is_number(cell)]
+    texts = [cell.lower() for cell in cells if not is_number(cell)]
     if any(texts):
         return np.array([cell.lower() in NO_FIX for cell in cells])
     values = found.numbers(state.column)
@@ -37,11 +37,3 @@ def kinds(found: FixFile, state: Named, kept: BoolArray) -> str:
         return ""
     words = ", ".join(f"{cell or 'empty'} in {count}" for cell, count in counts)
     return f"{state.column!r} is {words} rows: fixes of several kinds, whose errors differ"
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell or "nan")
-    except ValueError:
-        return False
-    return True

@@ -17,6 +17,7 @@ from odometry.table import Table
 # A log that is faster than its receiver holds each place for nearly the same number of rows; a
 # rounded place stays for as long as the robot needs to leave it
 HELD, EVENLY = 0.5, 0.8  # shares of the rows that repeat a place, and of even holds
+FEWEST = 4  # places: fewer are of a receiver that stands, or is frozen
 
 
 @dataclass(frozen=True)
@@ -160,7 +161,7 @@ def _held(degrees: FloatArray, kept: BoolArray) -> BoolArray:
     held = np.zeros_like(kept)
     lengths = np.diff(np.append(np.flatnonzero(~repeats), len(rows)))
     evenly = np.abs(lengths - np.median(lengths)) <= 1
-    if repeats.mean() >= HELD and evenly.mean() >= EVENLY:
+    if len(lengths) >= FEWEST and repeats.mean() >= HELD and evenly.mean() >= EVENLY:
         held[rows] = repeats
     return held
 

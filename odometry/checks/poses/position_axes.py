@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_rad
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.stamps.late_positions import reckoned_m
 from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.turns.turn_signs import Sense, gyroscope_sense, pose_sense
 
@@ -18,18 +19,31 @@ OFTEN, AT_TIMES = 0.97, 0.5
 SURE = 5.0  # standard deviations
 LEAST_DRIVEN_M = 3.0  # along the direction that is missing
 AS_MUCH = 0.2  # by which yaw may turn more or less than the gyroscope
+CONSTANT_M = 1e-3  # of a column that is not measured
+ACROSS = 0.2  # of the extent along: lanes there and back have less, whatever a gyroscope drifts
+CAUSE = (
+    "Positions are of other axes, one of which is vertical (a camera has x to the right, y down "
+    "and z ahead), or one of their columns was not measured (a constant): these cannot be "
+    "distinguished"
+)
 HELD = 0.9  # correlation of turns with those of the gyroscope, or of positions with the way
 
 
 def position_axes(evidence: Evidence) -> Iterator[Finding]:
-    """One direction of the drive is missing, and yaw turns as the gyroscope does.
+    """One direction of the drive is missing in the positions."""
+    if not evidence.yaw_measured:
+        yield from _constant_column(evidence)
+    elif _yaw_holds(evidence):
+        yield from _missing_direction(evidence)
+
+
+def _missing_direction(evidence: Evidence) -> Iterator[Finding]:
+    """One direction is missing, and yaw turns as the gyroscope does.
 
     Displacements in the frame of the poses are a matrix times those of the treads along the yaw: a
     rotation and a scale, whose two singular values are equal. One of them near zero is an axis
     that is vertical, or was not measured.
     """
-    if not evidence.yaw_measured or not _yaw_holds(evidence):
-        return
     m = evidence.motion
     yaw = middle_rad(m.yaw_rad)
     driven_m = m.mean_m[:, None] * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
@@ -58,10 +72,31 @@ def position_axes(evidence: Evidence) -> Iterator[Finding]:
         f"positions of pose.csv hardly change along {axis} ({sizes[1]:.2g} m for each m that "
         f"the robot drives that way by treads and yaw, {missing_m:.3g} m in all), and "
         f"{sizes[0]:.3g} m for each m across it; yaw turns as the other sensors do",
-        "Positions are of other axes, one of which is vertical (a camera has x to the right, y "
-        "down and z ahead), or one of their columns was not measured (a constant): these cannot be "
-        "distinguished",
+        CAUSE,
         "Write x and y of the horizontal plane in which yaw counts: x forward and y left at yaw 0",
+    )
+
+
+def _constant_column(evidence: Evidence) -> Iterator[Finding]:
+    """One column never changes, and the path of treads and gyroscope goes across it, too."""
+    pose = evidence.run.pose
+    if pose is None:
+        return
+    extents_m = np.array([np.ptp(pose[name][np.isfinite(pose[name])]) for name in ("x", "y")])
+    if extents_m.min() > CONSTANT_M or extents_m.max() < LEAST_DRIVEN_M:
+        return
+    path_m = reckoned_m(evidence)
+    across_m, along_m = np.sqrt(np.linalg.eigvalsh(np.cov(path_m.T)))
+    if across_m < max(LEAST_DRIVEN_M / 2, ACROSS * along_m):
+        return
+    yield Finding(
+        "position_axes",
+        Level.WARNING,
+        f"{'xy'[int(extents_m.argmin())]} of pose.csv never changes, and the other goes over "
+        f"{extents_m.max():.3g} m; the path of the treads and their turns is {2 * across_m:.3g} m "
+        f"wide and {2 * along_m:.3g} m long (twice its standard deviations)",
+        f"{CAUSE}; of latitude and longitude, too few digits are left (4.81E+01)",
+        "Write x and y of the horizontal plane, with all their digits",
     )
 
 

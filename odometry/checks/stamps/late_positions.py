@@ -129,7 +129,7 @@ def _speed_lag(evidence: Evidence, most_s: float) -> Lag | None:
     period_s = max(float(np.median(np.diff(stamps_s))), evidence.period_s)
     return lag_of_rates(
         _speed(stamps_s, pose.stack("x", "y")[used], measured_between),
-        _speed(evidence.stamps_s, _reckoned_m(evidence), _held_between),
+        _speed(evidence.stamps_s, reckoned_m(evidence), _held_between),
         (float(evidence.stamps_s[0]), float(evidence.stamps_s[-1])),
         max(LEAST_WIDTH_S, 2 * period_s),
         most_s,
@@ -152,7 +152,7 @@ def _held_between(at_s: FloatArray, stamps_s: FloatArray, values: FloatArray) ->
     return np.asarray(np.interp(at_s, stamps_s, values, left=np.nan, right=np.nan))
 
 
-def _reckoned_m(evidence: Evidence) -> FloatArray:
+def reckoned_m(evidence: Evidence) -> FloatArray:
     """Positions (N, 2) by the treads and the gyroscope, at the stamps of odometry.csv."""
     stamps_s, of = evidence.stamps_s, evidence.integrals
     turns_rad = evidence.turn_rad(evidence.uniform)

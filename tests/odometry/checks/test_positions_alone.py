@@ -196,3 +196,20 @@ def test_mirrored_positions_of_a_receiver_are_exchanged_columns(origin):
     (found,) = check_recording(run).at(Level.WARNING)
     assert found.name == "pose_mirrored"
     assert ("latitude and longitude are exchanged" in found.line) == (origin is not None)
+
+
+@pytest.mark.parametrize("name", ["x", "y"])
+@pytest.mark.parametrize("gyro", [True, False])
+def test_a_column_that_never_changes_was_not_measured(name, gyro):
+    run = without_yaw(turning_all_round())
+    run = put(run, "pose", **{name: np.full(len(run.pose), 3.7)})
+    (found,) = check_recording(run if gyro else without_gyroscope(run)).at(Level.WARNING)
+    assert found.name == "position_axes"
+    assert f"{name} of pose.csv never changes" in found.seen
+
+
+def test_a_lane_there_and_back_on_an_axis_is_measured():
+    goes = np.repeat([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0], 500)
+    run = drive(0.5 * goes, 0.1256637 * (1 - goes))
+    run = put(run, "pose", y=np.zeros(len(run.pose)))
+    assert "position_axes" not in warnings(without_yaw(run))

@@ -107,7 +107,7 @@ def test_columns_that_are_no_stamps_after_all_are_passed_over(tmp_path):
     odometry = Table(Path("odometry.csv"), {"t": STAMPS_S}, np.arange(ROWS))
     expect_usual(read_fixes(written(tmp_path, columns), odometry))
     columns.pop("time")
-    with pytest.raises(TrajectoryError, match=r"row 2, column 'utc_time': 'noon' is not a number"):
+    with pytest.raises(TrajectoryError, match=r"row 2, column 'utc_time': 'noon' is neither"):
         read_fixes(written(tmp_path, columns), odometry)
 
 
@@ -262,7 +262,7 @@ def test_places_that_are_rounded_stay(tmp_path):
     t = np.arange(600) / 20
     north_m = 8 * np.sin(t / 9) + 3 * np.sin(t / 2.3)
     latitudes = np.round(48.1 + north_m / 111_200, 5)
-    columns = {"time": BEGIN_S + t, "latitude": latitudes, "longitude": np.full(600, 11.5)}
+    columns = {"time": BEGIN_S + t, "latitude": latitudes, "longitude": np.full(600, 11.51234567)}
     assert (np.diff(latitudes) == 0).mean() > 0.9
     found = read_fixes(written(tmp_path, columns))
     assert not found.losses
@@ -275,3 +275,25 @@ def test_kinds_of_fixes_are_counted(tmp_path):
     note = "'fix_quality' is 4 in 30, 5 in 8 rows: fixes of several kinds, whose errors differ"
     assert note in found.notes
     assert not any("kinds" in note for note in read_fixes(written(tmp_path, usual())).notes)
+
+
+def test_one_place_in_all_rows_stays(tmp_path):
+    columns = usual(latitude=np.full(ROWS, 48.1), longitude=np.full(ROWS, 11.5))
+    assert len(read_fixes(written(tmp_path, columns)).places) == ROWS
+
+
+def test_one_angle_of_few_digits_is_noted(tmp_path):
+    found = read_fixes(written(tmp_path, usual(latitude=["4.810E+01"] * ROWS)))
+    assert any("have 1 decimals" in note for note in found.notes)
+
+
+def test_altitudes_of_another_unit_are_left_out(tmp_path):
+    found = read_fixes(written(tmp_path, usual(altitude=HEIGHTS_M * 1000)))
+    assert np.isnan(found.places[:, 2]).all()
+    assert any("'altitude' is beyond -500 to 9000 m in 40 rows" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("cell", ["06:20:00.5", "12/01/2025 06:20:00", "01.12.2025 06:20:00"])
+def test_times_that_are_no_dates_are_refused_in_words(tmp_path, cell):
+    with pytest.raises(TrajectoryError, match=r"is neither a number nor a date with a time"):
+        read_fixes(written(tmp_path, usual(time=[cell] * ROWS)))
