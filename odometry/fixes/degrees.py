@@ -70,11 +70,9 @@ def rounded(degrees: FloatArray) -> str:
     """A note on places (N, 2), one of whose angles was written with few decimals; else empty."""
     for decimals in range(ENOUGH):
         if (np.round(degrees, decimals) == degrees).all(axis=0).any():
+            places = f"{decimals} decimal{'s' * (decimals != 1)}"
             step_m = DEG_M / 10**decimals
-            return (
-                f"its degrees have {decimals} decimals, steps of {step_m:.2g} m: write {ENOUGH} or "
-                "more"
-            )
+            return f"its degrees have {places}, steps of {step_m:.2g} m: write {ENOUGH} or more"
     return ""
 
 

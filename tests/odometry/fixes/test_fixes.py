@@ -284,7 +284,7 @@ def test_one_place_in_all_rows_stays(tmp_path):
 
 def test_one_angle_of_few_digits_is_noted(tmp_path):
     found = read_fixes(written(tmp_path, usual(latitude=["4.810E+01"] * ROWS)))
-    assert any("have 1 decimals" in note for note in found.notes)
+    assert any("have 1 decimal," in note for note in found.notes)
 
 
 def test_altitudes_of_another_unit_are_left_out(tmp_path):
