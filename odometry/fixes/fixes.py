@@ -155,13 +155,17 @@ def _no_stamps(
 
 
 def _held(degrees: FloatArray, kept: BoolArray) -> BoolArray:
-    """Rows (N,) that only repeat the place before, where a log does so evenly; else none."""
+    """Rows (N,) that only repeat the place before, where a log does so evenly; else none.
+
+    None either of places with few digits: a moving robot leaves small cells evenly, too.
+    """
     rows = np.flatnonzero(kept)
     repeats = np.append(False, (np.diff(degrees[rows], axis=0) == 0).all(axis=1))
     held = np.zeros_like(kept)
     lengths = np.diff(np.append(np.flatnonzero(~repeats), len(rows)))
     evenly = np.abs(lengths - np.median(lengths)) <= 1
-    if len(lengths) >= FEWEST and repeats.mean() >= HELD and evenly.mean() >= EVENLY:
+    is_fine = not rounded(degrees[rows])
+    if is_fine and len(lengths) >= FEWEST and repeats.mean() >= HELD and evenly.mean() >= EVENLY:
         held[rows] = repeats
     return held
 

@@ -13,7 +13,7 @@ from odometry.table import Table
 BEGIN_S = 1_700_000_000.0
 ROWS = 40
 STAMPS_S = BEGIN_S + np.arange(ROWS) / 5
-LATITUDES = 48.1 + np.arange(ROWS) * 2e-6
+LATITUDES = 48.1 + np.arange(ROWS) * 2.0371e-6
 LONGITUDES = 11.5 + np.sin(np.arange(ROWS) / 7) * 3e-5
 HEIGHTS_M = np.full(ROWS, 512.5)
 
@@ -275,6 +275,15 @@ def test_kinds_of_fixes_are_counted(tmp_path):
     note = "'fix_quality' is 4 in 30, 5 in 8 rows: fixes of several kinds, whose errors differ"
     assert note in found.notes
     assert not any("kinds" in note for note in read_fixes(written(tmp_path, usual())).notes)
+
+
+def test_small_cells_that_a_robot_leaves_evenly_stay(tmp_path):
+    """Six decimals, 0.11 m, at 0.8 m/s and 20 Hz: each cell has two or three rows."""
+    t = np.arange(400) / 20
+    latitudes = np.round(48.1 + 0.8 * t / 111_200, 6)
+    columns = {"time": BEGIN_S + t, "latitude": latitudes, "longitude": np.full(400, 11.51234567)}
+    assert (np.diff(latitudes) == 0).mean() > 0.5
+    assert not read_fixes(written(tmp_path, columns)).losses
 
 
 def test_one_place_in_all_rows_stays(tmp_path):
