@@ -130,7 +130,7 @@ def _turned(evidence: Evidence, ways: VelocityWays) -> Finding | None:
         ("gyro_z", evidence.turn_rad(m)),
     ):
         by_treads = relation(turn_rad, m.difference_m / evidence.run.robot.track_width)
-        agrees = by_treads is not None and by_treads.certain() and by_treads.slope > 0
+        agrees = by_treads is not None and by_treads.explained > CLEAR and by_treads.slope > 0
         by = relation(ways.turned, turn_rad) if agrees else None
         if by is None or float(np.nansum(np.abs(turn_rad))) < LEAST_RAD:
             continue

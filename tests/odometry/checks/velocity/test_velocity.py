@@ -100,6 +100,16 @@ def test_treads_that_slip_do_not_accuse_a_velocity():
     assert not found_in(with_velocity(right, put(slips, "odometry", **treads)))
 
 
+def test_turns_that_are_noise_of_the_poses_accuse_no_turn_rate():
+    straight = drive(0.14 + 0 * AT_S, 0.03 * np.sin(AT_S / 3), yaw_sigma=0.02)
+
+    def slow(at_s, vx, vy, wz, _):
+        turn = 0.03 * np.sin(at_s / 3) + 0.01 * np.random.default_rng(1).standard_normal(len(at_s))
+        return at_s, 0.14 + 0 * vx, 0 * vy, turn + 0 * wz
+
+    assert not found_in(with_velocity(slow, straight))
+
+
 def test_empty_cells_and_gaps_are_not_measured():
     run = with_velocity(right)
     vx, at_s = run.velocity["vx"].copy(), run.velocity["t"]
