@@ -12,6 +12,7 @@ from odometry.checks.copies.copied_turns import without_gyroscope
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.bursts import in_bursts
+from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.errors import RunFolderError
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
@@ -128,10 +129,10 @@ def _findings(run: Run, classifier: "TerrainClassifier | None") -> Iterator[Find
 
 
 def _motion(run: Run, report: CheckReport) -> tuple[Sequence[Finding], Sequence[str]]:
-    """Images against the motion of the treads, where nothing else is wrong with either."""
+    """Images against the motion of the treads, where nothing is wrong with either."""
     if run.images is None:
         return (), ()
-    if report.misleads:
+    if any(f.level is not Level.NOTE and f.name not in VELOCITY_FAULTS for f in report.findings):
         return (), ("whether images show the motion of the treads: see the warnings",)
     findings, skipped = image_motion(run, Camera.from_table(run.settings["camera"]))
     return findings, (skipped,) if skipped else ()

@@ -126,7 +126,7 @@ def _turned(evidence: Evidence, ways: VelocityWays) -> Finding | None:
     """The finding of wz, by the gyroscope or yaw, whichever agrees with the treads."""
     m = evidence.motion
     for of, turn_rad in (
-        ("yaw of the poses", _yaw_rad(evidence)),
+        ("the yaw of the poses", _yaw_rad(evidence)),
         ("gyro_z", evidence.turn_rad(m)),
     ):
         by_treads = relation(turn_rad, m.difference_m / evidence.run.robot.track_width)
@@ -145,7 +145,8 @@ def _yaw_rad(evidence: Evidence) -> FloatArray:
 
 
 def _of_turns(by: Relation, of: str) -> Finding | None:
-    seen = f"wz of velocity.csv is {by.slope:.3g} times what {of} turn{'s' * (of == 'gyro_z')}"
+    turns = "turn" if of == "the treads" else "turns"
+    seen = f"wz of velocity.csv is {by.slope:.3g} times what {of} {turns}"
     low, high = RIGHT if of != "the treads" else OF_TREADS
     if by.explained < POOR:
         return _finding(

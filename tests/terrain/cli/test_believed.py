@@ -12,6 +12,7 @@ from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.run import Run
 from terrain.believed import ELSEWHERE, OF_STRETCHES, run_to_label
+from terrain.checks.recording import _motion
 from terrain.classification.classifier import TerrainClassifier
 from terrain.cli.verbs.batch import batch
 from terrain.cli.verbs.run import run
@@ -159,3 +160,16 @@ def test_in_python_a_published_system_keeps_its_camera(across_run, training_patc
     paper.fit(*training_patches)
     result = run_odometry(across_run, model=paper, terrain="gravel", preset="chen2023")
     assert result.watcher is not None
+
+
+def test_wrong_velocities_keep_images_from_no_check(across_run, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "terrain.checks.recording.image_motion", lambda *of: asked.append(of) or ([], "")
+    )
+    of, backwards = Run.read(across_run), found("velocity_reversed")
+    for report in (CheckReport(across_run, ()), CheckReport(across_run, (backwards,))):
+        _motion(of, report)
+    assert len(asked) == 2
+    _motion(of, CheckReport(across_run, (backwards, found("scale"))))
+    assert len(asked) == 2
