@@ -82,7 +82,9 @@ def _constant_column(evidence: Evidence) -> Iterator[Finding]:
     pose = evidence.run.pose
     if pose is None:
         return
-    extents_m = np.array([np.ptp(pose[name][np.isfinite(pose[name])]) for name in ("x", "y")])
+    positions_m = pose.stack("x", "y")
+    positions_m = positions_m[np.isfinite(positions_m).all(axis=1)]
+    extents_m = np.ptp(positions_m, axis=0) if len(positions_m) else np.zeros(2)
     if extents_m.min() > CONSTANT_M or extents_m.max() < LEAST_DRIVEN_M:
         return
     path_m = reckoned_m(evidence)
