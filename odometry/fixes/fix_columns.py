@@ -27,6 +27,13 @@ STAMP = re.compile(
 )
 WHOLE = re.compile(r"(?P<of>.*?)secs?")  # seconds of a stamp whose nanoseconds are another column
 REST = re.compile(r"(?P<of>.*?)(?:nsecs?|nanosecs?)")
+# What `ros2 topic echo --csv` prints of a NavSatFix, which has no header
+ECHOED = (
+    *("header.stamp.sec", "header.stamp.nanosec", "header.frame_id", "status.status"),
+    *("status.service", "latitude", "longitude", "altitude"),
+    *(f"position_covariance.{k}" for k in range(9)),
+    "position_covariance_type",
+)
 STATE = re.compile(
     rf"{OF}(?:(?P<navsat>status)|(?P<kind>fix_?type)|(?P<quality>fix_?quality|quality|qual)|"
     r"(?P<flag>fix|has_fix|fix_valid))"
@@ -62,8 +69,17 @@ class FixColumns:
     states: tuple[Named, ...]
 
 
-def header_of(file: Path) -> tuple[int, str] | None:
-    """Lines above a header that names latitude and longitude, and its separator; else None.
+@dataclass(frozen=True)
+class Header:
+    """Lines above the header, the separator, and the names of the columns of a file without one."""
+
+    before: int = 0
+    separator: str = ","
+    names: tuple[str, ...] = ()
+
+
+def header_of(file: Path) -> Header | None:
+    """Where a file names latitude and longitude; None of other files.
 
     Raises
     ------
@@ -72,11 +88,24 @@ def header_of(file: Path) -> tuple[int, str] | None:
     """
     with opened_lines(file, TrajectoryError) as lines:
         for before, line in enumerate(islice(lines, MOST_LINES)):
+            if before == 0 and _is_echoed(line.split(",")):
+                return Header(names=ECHOED)
             for separator in SEPARATORS:
                 names = [plain(cell)[0] for cell in line.split(separator)]
                 if all(any(map(kind.fullmatch, names)) for kind in (LATITUDE, LONGITUDE)):
-                    return before, separator
+                    return Header(before, separator)
     return None
+
+
+def _is_echoed(cells: Sequence[str]) -> bool:
+    """Whether a row is a NavSatFix: whole seconds and nanoseconds, a frame, 15 numbers."""
+    if len(cells) != len(ECHOED) or not (cells[0] + cells[1]).isdigit():
+        return False
+    try:
+        list(map(float, cells[3:]))
+    except ValueError:
+        return False
+    return True
 
 
 def plain(cell: str) -> tuple[str, str]:

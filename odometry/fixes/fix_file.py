@@ -141,8 +141,9 @@ def read_fix_file(file: Path) -> FixFile | None:
     found = header_of(file)
     if found is None:
         return None
-    before, separator = found
-    with opened_csv(file, TrajectoryError, separator, before) as (header, blocks):
+    separator = found.separator
+    opened = opened_csv(file, TrajectoryError, separator, found.before, found.names)
+    with opened as (header, blocks):
         columns = columns_of(header, file)
         wanted = _wanted(columns)
         lines: list[int] = []

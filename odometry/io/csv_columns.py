@@ -36,7 +36,11 @@ def unquoted_text(cell: str) -> str:
 
 @contextmanager
 def opened_csv(
-    file: Path, error: type[OdometryError], separator: str = ",", before: int = 0
+    file: Path,
+    error: type[OdometryError],
+    separator: str = ",",
+    before: int = 0,
+    names: Sequence[str] = (),
 ) -> Iterator[tuple[list[str], Iterator[Block]]]:
     """Open a CSV file: its header, and its rows in blocks; blank lines are left out.
 
@@ -50,6 +54,8 @@ def opened_csv(
         Between cells.
     before : int
         Lines above the header, which are left out.
+    names : sequence of str
+        Of the columns of a file without a header.
 
     Raises
     ------
@@ -59,7 +65,7 @@ def opened_csv(
     """
     with opened_lines(file, error) as lines:
         rows = _rows(islice(lines, before, None), file, error, separator, before)
-        _, header = next(rows, (1, []))
+        _, header = (1, list(names)) if names else next(rows, (1, []))
         header = [unquoted_text(name.strip()) for name in header]
         repeated = sorted({name for name in header if header.count(name) > 1})
         if repeated:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from odometry.errors import TrajectoryError
-from odometry.fixes.fix_columns import columns_of, header_of
+from odometry.fixes.fix_columns import Header, columns_of, header_of
 
 ROSTOPIC = (
     "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.status.status,"
@@ -41,7 +41,7 @@ ARDUPILOT = "TimeUS,Status,GMS,GWk,NSats,HDop,Lat,Lng,Alt,Spd"
 def test_columns_are_found_by_their_names(tmp_path, header, latitude, stamps, states):
     file = tmp_path / "gnss.csv"
     file.write_text(header + "\n")
-    assert header_of(file) == (0, ",")
+    assert header_of(file) == Header()
     found = columns_of(header.replace('"', "").split(","), file)
     assert found.latitude.column == latitude
     names = [
@@ -62,7 +62,7 @@ def test_units_that_names_state():
 def test_lines_above_the_header_and_other_separators(tmp_path):
     file = tmp_path / "gnss.csv"
     file.write_text("# a logger\n# of a farm\ntime;lat;lon\n")
-    assert header_of(file) == (2, ";")
+    assert header_of(file) == Header(2, ";")
     file.write_text("t,x,y,yaw\n")
     assert header_of(file) is None
     file.write_text("late,lateral,longest,lonely\n")

@@ -306,3 +306,18 @@ def test_altitudes_of_another_unit_are_left_out(tmp_path):
 def test_times_that_are_no_dates_are_refused_in_words(tmp_path, cell):
     with pytest.raises(TrajectoryError, match=r"is neither a number nor a date with a time"):
         read_fixes(written(tmp_path, usual(time=[cell] * ROWS)))
+
+
+def test_what_ros2_echoes_as_csv_has_no_header(tmp_path):
+    rest = ",".join(["0.1"] * 9)
+    rows = [
+        f"{int(t)},{round(t % 1 * 1e9)},gps,{-1 if k == 7 else 0},1,{a:.9f},{b:.9f},512.5,{rest},2"
+        for k, (t, a, b) in enumerate(zip(STAMPS_S, LATITUDES, LONGITUDES, strict=True))
+    ]
+    file = tmp_path / "fix.csv"
+    file.write_text("\n".join(rows) + "\n")
+    found = read_fixes(file)
+    assert len(found.places) == ROWS - 1
+    np.testing.assert_allclose(found.stamps_s, np.delete(STAMPS_S, 7), atol=1e-6)
+    np.testing.assert_allclose(found.places[:, 0], np.delete(LATITUDES, 7), atol=2e-9)
+    assert "1 of 40 rows without a fix ('status.status' says so), row 8 first" in found.losses
