@@ -88,7 +88,8 @@ def write_run_folder(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from pathlib import Path
-    >>>     >>> import odometry
+    >>> import numpy as np
+    >>> import odometry
     >>> ahead = {"t": np.array([0.0, 1.0]), "v_left": np.full(2, 0.5), "v_right": np.full(2, 0.5)}
     >>> settings = {"robot": {"track_width": 0.4}}
     >>> with TemporaryDirectory() as folder:
