@@ -32,7 +32,8 @@ SUFFIXES = re.compile(r".*\.(?:bag|bag\.active|mcap|db3)(?:\.zstd|\.zst)?$", re.
 TABLES = (".csv", ".tsv", ".txt", ".log")
 OF_TABLES = (
     "A log of lines of numbers needs no import: rename its columns as in data/README.md (Run "
-    "folder), and check names what is left to convert"
+    "folder), and check names what is left to convert. Latitude and longitude become its "
+    "positions: terrain-odometry import RUN --pose FILE"
 )
 LISTED = re.compile(
     r"^\s*- (?:path: )?[\"']?([^\s:\"']+\.(?:mcap|db3)(?:\.zstd)?)[\"']?\s*$", re.MULTILINE

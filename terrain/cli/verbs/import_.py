@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from odometry.bags.topic_roles import TopicMap
 
 LARGEST_M = 1000.0
+OF_RUNS = ("run.toml", "odometry.csv")
 # Options that override a key of the map, and the key
 KEYS = {
     "wheels": "wheels.topic",
@@ -116,7 +117,7 @@ def import_(
       terrain-odometry import rosbag2_folder --map my_robot_bags.toml --out my_run
       terrain-odometry import my_run --pose slam.tum
     """
-    if poses.files and any((bag / "run.toml").exists() for bag in bags):
+    if poses.files and any((bag / name).exists() for bag in bags for name in OF_RUNS):
         _check(add_to_run(bags, out, poses))
         return
     if out is None and not as_list:

@@ -157,3 +157,12 @@ def test_quaternions_of_the_other_order_are_refused(run, tmp_path, name, columns
     assert f"where its quaternions are in the order {order}" in str(answer.exception)
     assert not (folder / "pose.csv").exists()
     assert call(folder, "--pose", file).exit_code == 0
+
+
+def test_a_run_folder_without_its_settings_is_no_bag(run, tmp_path):
+    folder, poses = run
+    (file,) = write_trajectory(tmp_path, "slam", SpatialTrajectory.from_plane(poses), "tum")
+    (folder / "run.toml").unlink()
+    answer = call(folder, "--pose", file)
+    assert "a run folder needs run.toml" in str(answer.exception)
+    assert not (folder / "pose.csv").exists()
