@@ -51,8 +51,9 @@ def test_runs_that_agree_exactly_are_fused_as_one_filter_would():
         assert merged.spread == dict.fromkeys(NAMES, 0.0)
 
 
-@pytest.mark.parametrize("runs", [2, 5, 20])
-@pytest.mark.parametrize("spread", [0.0, 0.01, 0.05])
+@pytest.mark.parametrize(
+    ("runs", "spread"), [(2, 0.0), (2, 0.05), (5, 0.01), (20, 0.0), (20, 0.05)]
+)
 def test_a_next_run_lies_where_the_covariance_says(rng, runs, spread):
     """In nine of ten cases, or more, whatever the spread: runs of unequal covariances."""
     within = []

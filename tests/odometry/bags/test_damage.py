@@ -55,7 +55,7 @@ def true_rows(run):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("share", [0.35, 0.7, 0.95])
+@pytest.mark.parametrize("share", [0.35, 0.95])
 def test_a_file_that_was_cut_is_read_up_to_the_cut(kind, share, bag_file, tmp_path):
     file = bag_file(kind, tmp_path)
     content = file.read_bytes()

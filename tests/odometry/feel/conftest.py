@@ -1,10 +1,9 @@
 import pytest
 
-from odometry.feel.identify_feel import identify_feel
-from tests.odometry.feel.feel_drives import drives
+from tests.odometry.feel.feel_drives import model_of_three
 
 
 @pytest.fixture(scope="session")
 def model():
-    """Of three made terrains, four runs each."""
-    return identify_feel(drives(["tiles", "gravel", "snow"]))
+    """Of three made terrains, three runs each."""
+    return model_of_three()

@@ -79,9 +79,9 @@ def test_modes_within_an_error_of_each_other_are_not_named_however_long_one_fits
     """The truth is the first mode; the second is off by one deviation of what lasts."""
     rng = np.random.default_rng(4)
     off = LASTING_RAD_S
-    omega = 1.0 + 0.005 * rng.normal(size=6000)
+    omega = 1.0 + 0.005 * rng.normal(size=3000)
     near, far = (
-        follow_signals(drive(np.ones(6000), omega), ModeSet(modes(1.0, 1.0 + by), np.full(2, 20.0)))
+        follow_signals(drive(np.ones(3000), omega), ModeSet(modes(1.0, 1.0 + by), np.full(2, 20.0)))
         for by in (off, 10 * off)
     )
     assert set(named_modes(near, 0.9)) == {UNDETERMINED}

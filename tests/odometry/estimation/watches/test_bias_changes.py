@@ -103,8 +103,7 @@ def test_nothing_is_detected_without_poses(driven):
     assert changes(estimated(driven, stepped(driven), None)) == []
 
 
-@pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("scale", [0.97, 1.0, 1.03])
+@pytest.mark.parametrize(("seed", "scale"), [(0, 0.97), (1, 1.0), (2, 1.03), (3, 1.0)])
 def test_noise_and_scale_are_no_change(driven, seed, scale):
     rng = np.random.default_rng(seed)
     rates = scale * driven.yaw_rates_rad_s + rng.normal(0, 0.02, len(driven.stamps_s))
