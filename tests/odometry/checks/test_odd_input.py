@@ -1,6 +1,7 @@
 """The check says something, or nothing, of every recording that the format allows."""
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -89,9 +90,15 @@ ODD = {
 }
 
 
-@pytest.mark.parametrize("count", [10, 13, 24, 60, 600])
-@pytest.mark.parametrize("odd", ODD)
-@pytest.mark.parametrize("driven", DRIVES)
+# Each number of so few rows comes with every oddity and with every drive, not with every pair.
+FEW_ROWS = [
+    (tuple(DRIVES)[(i + j) % len(DRIVES)], odd, count)
+    for i, odd in enumerate(ODD)
+    for j, count in enumerate([10, 13, 24, 60])
+]
+
+
+@pytest.mark.parametrize(("driven", "odd", "count"), [*product(DRIVES, ODD, [600]), *FEW_ROWS])
 def test_nothing_legal_makes_it_raise(driven, odd, count):
     """Warnings of NumPy are errors here."""
     report = check_recording(ODD[odd](drive(count, *DRIVES[driven])))

@@ -11,8 +11,9 @@ from tests.odometry.checks.drives import shunting
 from tests.odometry.checks.faulty import SENSORS, gyroscope, treads
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize(
+    ("sensors", "side"), list(zip(SENSORS, ("left", "right", "left"), strict=True))
+)
 def test_it_is_named_where_turns_seem_to_flip(side, sensors):
     signs = (-1, 1) if side == "left" else (1, -1)
     run = treads(shunting(2), lambda left, right: (signs[0] * left, signs[1] * right))

@@ -23,8 +23,9 @@ def wears(run, side, to):
     return treads(run, lambda *both: scales * both)
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize(("side", "to"), [(0, 0.4), (1, 0.7), (1, 2.0)])
+@pytest.mark.parametrize(
+    ("sensors", "side", "to"), list(zip(SENSORS, (0, 1, 1), (0.4, 2.0, 0.7), strict=True))
+)
 def test_the_tread_and_its_scale_are_named(sensors, side, to):
     wrong = SENSORS[sensors](wears(varied(), side, to))
     found = check_recording(wrong).findings[0]

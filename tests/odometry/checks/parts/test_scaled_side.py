@@ -21,8 +21,7 @@ def in_part(run, change):
     return treads(run, lambda *both: np.where(part, change(*both), both))
 
 
-@pytest.mark.parametrize("reads", [0.3, 0.5, 1.6, 2.0])
-@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize(("side", "reads"), [(0, 0.3), (1, 0.5), (1, 1.6), (0, 2.0)])
 def test_the_tread_its_scale_and_the_span_are_named(reads, side):
     scales = np.ones((2, 1))
     scales[side] = reads
@@ -38,8 +37,7 @@ def test_the_tread_its_scale_and_the_span_are_named(reads, side):
     assert end_s == pytest.approx(SPAN_S[1], abs=4.0)
 
 
-@pytest.mark.parametrize("reads", [0.72, 1.37])
-@pytest.mark.parametrize("sensors", SENSORS)
+@pytest.mark.parametrize(("sensors", "reads"), list(zip(SENSORS, (0.72, 1.37, 0.72), strict=True)))
 def test_a_scale_that_slip_may_be_is_named_with_its_span_and_slip(reads, sensors):
     wrong = in_part(varied(), lambda left, right: (left, reads * right))
     (found,) = part_changes(Evidence(SENSORS[sensors](wrong)))

@@ -20,8 +20,7 @@ def rounded(run, step_m, span_s=(-np.inf, np.inf)):
     )
 
 
-@pytest.mark.parametrize("span_s", SPANS)
-@pytest.mark.parametrize("step_m", [0.05, 0.3, 1.0])
+@pytest.mark.parametrize(("span_s", "step_m"), list(zip(SPANS, (0.05, 0.3, 1.0), strict=True)))
 def test_a_part_in_steps_is_named_with_its_moments(step_m, span_s):
     (found,) = check_recording(rounded(varied(), step_m, span_s)).at(Level.WARNING)
     assert found.name == "coarse_positions"

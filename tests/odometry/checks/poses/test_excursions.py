@@ -22,9 +22,8 @@ def elsewhere(run, begin_s, lasts_s):
     return put(run, "pose", x=run.pose["x"] + 5.0 * away)
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
 @pytest.mark.parametrize("begin_s", [40.0, AT_REST_S[0] + 4.0])
-@pytest.mark.parametrize("lasts_s", [1.0, 2.0, 4.0])
+@pytest.mark.parametrize(("sensors", "lasts_s"), list(zip(SENSORS, (1.0, 2.0, 4.0), strict=True)))
 def test_they_are_outliers_and_no_jump_nor_another_recording(lasts_s, begin_s, sensors):
     (found,) = check_recording(SENSORS[sensors](elsewhere(pausing(), begin_s, lasts_s))).findings
     assert found.name == "pose_outliers"

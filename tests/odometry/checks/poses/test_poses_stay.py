@@ -25,8 +25,7 @@ def spun(lasts_s, speeds=TURNS):
     return put(run, "odometry", **columns)
 
 
-@pytest.mark.parametrize("change", [lambda run: run, without_gyroscope])
-@pytest.mark.parametrize("lasts_s", [2.5, 4.0])
+@pytest.mark.parametrize(("change", "lasts_s"), [(lambda run: run, 2.5), (without_gyroscope, 4.0)])
 def test_treads_that_turn_on_the_spot_beside_a_robot_that_stays_are_noted(lasts_s, change):
     (found,) = check_recording(change(spun(lasts_s))).findings
     assert (found.name, found.level) == ("slip_episodes", Level.NOTE)

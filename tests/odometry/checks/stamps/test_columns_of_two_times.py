@@ -22,8 +22,7 @@ def warnings(run):
     return list(check_recording(run).at(Level.WARNING))
 
 
-@pytest.mark.parametrize("rows", [10, 16])
-@pytest.mark.parametrize("side", ["v_left", "v_right"])
+@pytest.mark.parametrize(("rows", "side"), [(10, "v_left"), (16, "v_right")])
 def test_a_column_that_is_shifted_is_named_with_its_time(rows, side):
     run = varied()
     (found,) = warnings(put(run, "odometry", **{side: np.roll(run.odometry[side], rows)}))
@@ -102,8 +101,7 @@ def elsewhere(run):
     return put(run, "pose", x=30 - run.pose["x"], y=8 - run.pose["y"], yaw=run.pose["yaw"] + np.pi)
 
 
-@pytest.mark.parametrize("gap_s", [0.1, 1.0])
-@pytest.mark.parametrize("gyroscope", [True, False])
+@pytest.mark.parametrize(("gap_s", "gyroscope"), [(0.1, True), (1.0, False)])
 def test_two_recordings_in_one_file_are_said_before_what_else_moves_poses(gap_s, gyroscope):
     run = joined(varied(), elsewhere(varied(seed=3)), gap_s)
     (found,) = warnings(run if gyroscope else without_gyroscope(run))

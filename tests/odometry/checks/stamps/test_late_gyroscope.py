@@ -21,9 +21,13 @@ def sparse(run):
 WITHOUT = {"no poses": lambda run: replace(run, pose=None), "few poses": sparse}
 
 
-@pytest.mark.parametrize("poses", WITHOUT)
-@pytest.mark.parametrize("names", [("gyro_z",), TREADS], ids=["gyroscope", "treads"])
-@pytest.mark.parametrize("seconds", [-0.4, 0.4])
+@pytest.mark.parametrize(
+    ("poses", "names", "seconds"),
+    [
+        *(("no poses", ("gyro_z",), -0.4), ("no poses", TREADS, -0.4)),
+        *(("few poses", ("gyro_z",), 0.4), ("few poses", TREADS, 0.4)),
+    ],
+)
 def test_where_poses_do_not_decide_both_are_named(poses, names, seconds):
     found = check_recording(WITHOUT[poses](later(winding(), names, seconds))).findings[0]
     assert found.name in ("treads_late", "treads_are_commands")

@@ -19,9 +19,12 @@ def warned(run):
     return check_recording(run).at(Level.WARNING)
 
 
-@pytest.mark.parametrize("seconds", [0.7, -0.4])
 @pytest.mark.parametrize(
-    ("names", "named"), [(("yaw",), "yaw_late"), (("x", "y"), "positions_late")]
+    ("names", "named", "seconds"),
+    [
+        *((("yaw",), "yaw_late", 0.7), (("x", "y"), "positions_late", -0.4)),
+        (("x", "y"), "positions_late", 0.7),
+    ],
 )
 def test_the_part_of_a_pose_that_is_late_is_named_with_its_delay(names, named, seconds):
     (found,) = warned(late(driven(), names, seconds))
@@ -40,8 +43,7 @@ def test_poses_of_one_time_are_not_parted(run):
     assert not {"yaw_late", "positions_late"} & {found.name for found in warned(run)}
 
 
-@pytest.mark.parametrize("of", ["along", "turning"])
-@pytest.mark.parametrize("seconds", [0.5, -0.5])
+@pytest.mark.parametrize(("of", "seconds"), [("along", 0.5), ("turning", -0.5)])
 def test_treads_of_two_times_are_no_late_part(of, seconds):
     """As a robot that follows its treads late in one of both: positions go where yaw points."""
     run = driven()

@@ -10,8 +10,9 @@ from tests.odometry.checks.faulty import treads, without_gyroscope
 METRES_A_COUNT = {"metres": 1.0, "radians of 8 cm": 0.08, "ticks": 5e-4}
 
 
-@pytest.mark.parametrize("unit", METRES_A_COUNT)
-@pytest.mark.parametrize("gyroscope", [True, False])
+@pytest.mark.parametrize(
+    ("unit", "gyroscope"), list(zip(METRES_A_COUNT, (True, False, True), strict=True))
+)
 def test_counts_that_grow_all_the_time_are_named(unit, gyroscope):
     """They explain a half of the way ahead, as any number of one sign does."""
     run = uneven() if gyroscope else without_gyroscope(uneven())

@@ -16,8 +16,9 @@ def slow_for_a_while():
     return drive(speed, 0.9 * speed * np.sin(at_s / 1.7))
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize("name", ["v_left", "v_right"])
+@pytest.mark.parametrize(
+    ("sensors", "name"), list(zip(SENSORS, ("v_left", "v_right", "v_left"), strict=True))
+)
 def test_a_tread_that_reads_no_slow_speed_is_not_lost(name, sensors):
     run = SENSORS[sensors](slow_for_a_while())
     run = limited(run, name, lambda v: np.where(np.abs(v) < 0.7, 0.0, v))
@@ -69,8 +70,10 @@ def seldom_slow():
     return drive(np.where((at_s > 60) & (at_s < 80), 0.35, 2 - dips), 0.3 * np.sin(at_s / 1.7))
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize("driven", [slower_for_a_while, seldom_slow])
+@pytest.mark.parametrize(
+    ("sensors", "driven"),
+    list(zip(SENSORS, (slower_for_a_while, seldom_slow, slower_for_a_while), strict=True)),
+)
 def test_an_encoder_that_is_lost_while_slow_by_chance_may_be_either(driven, sensors):
     """It reads slow speeds elsewhere, or is seldom slow."""
     found = check_recording(held(SENSORS[sensors](driven()), "v_left", 60, 80, 0.0)).findings[0]
@@ -93,8 +96,15 @@ def with_zeros(run, slow):
     return put(run, "odometry", v_left=speed)
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
-@pytest.mark.parametrize(("slow", "begin"), [(True, "Either slow speeds"), (False, "Samples drop")])
+@pytest.mark.parametrize(
+    ("sensors", "slow", "begin"),
+    [
+        ("gyroscope and poses", True, "Either slow speeds"),
+        ("gyroscope", True, "Either slow speeds"),
+        ("poses", True, "Either slow speeds"),
+        ("gyroscope", False, "Samples drop"),
+    ],
+)
 def test_zeros_beside_the_slowest_speed_that_is_read_may_be_slow(slow, begin, sensors):
     run = with_zeros(SENSORS[sensors](never_slow()), slow)
     (found,) = check_recording(run).at(Level.WARNING)

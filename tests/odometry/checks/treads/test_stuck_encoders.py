@@ -26,10 +26,11 @@ def straight_between_stands():
     return drive(1.2 * moves, 0.4 * np.sin(at_s) * moves * (at_s < 80))
 
 
-@pytest.mark.parametrize("sensors", SENSORS)
 @pytest.mark.parametrize(
-    ("name", "begin_s", "end_s"),
-    [("v_left", 100, 160), ("v_right", 86, 196), ("v_left", 103, 113)],
+    ("sensors", "name", "begin_s", "end_s"),
+    list(
+        zip(SENSORS, ("v_left", "v_right", "v_left"), (100, 86, 103), (160, 196, 113), strict=True)
+    ),
 )
 def test_a_tread_that_reads_zero_on_a_straight_drive_is_lost(name, begin_s, end_s, sensors):
     run = held(straight_between_stands(), name, begin_s, end_s, 0.0)
