@@ -1,12 +1,15 @@
 """Files are the same, byte by byte, in any locale, time zone, hash seed, threads and processes."""
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
 
 import cv2
 import pytest
+
+from terrain.cli.main import main
 
 VERBS = """
 import shlex, sys
@@ -20,7 +23,6 @@ for line in sys.argv[1:]:
             sys.exit(f"{line}: {ended.code}")
 """
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LOKY_MAX_CPU_COUNT")
-USUAL = {"LC_ALL": "C.UTF-8", "TZ": "UTC", "PYTHONHASHSEED": "0"} | dict.fromkeys(THREADS, "1")
 UNUSUAL = {  # text is ASCII where no encoding is named
     "LC_ALL": "C",
     "PYTHONUTF8": "0",
@@ -49,30 +51,43 @@ def calls(curvy_run, across_run, training_patches, tmp_path_factory):
     ]
 
 
+def contents(folder):
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
 @pytest.fixture
-def written(calls, tmp_path_factory):
-    """Call the verbs in an environment: the files that they write, by name."""
+def usual(calls, tmp_path_factory, monkeypatch):
+    """The files that the verbs write in this process, with one thread (`conftest.py`), by name."""
+    folder = tmp_path_factory.mktemp("usual")
+    monkeypatch.chdir(folder)
+    for line in calls:
+        monkeypatch.setattr(sys, "argv", ["terrain-odometry", *shlex.split(line)])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        assert not ended.value.code, line
+    return contents(folder)
 
-    def write(environment):
-        folder = tmp_path_factory.mktemp("called")
-        kept = {name: text for name, text in os.environ.items() if not name.startswith("LC_")}
-        ended = subprocess.run(
-            [sys.executable, "-c", VERBS, *calls],
-            cwd=folder,
-            env=kept | environment,
-            check=False,
-            capture_output=True,
-        )
-        assert ended.returncode == 0, ended.stderr.decode(errors="replace")
-        files = (path for path in folder.rglob("*") if path.is_file())
-        return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
-    return write
+@pytest.fixture
+def unusual(calls, tmp_path_factory):
+    """Those that they write in another process and environment."""
+    folder = tmp_path_factory.mktemp("unusual")
+    kept = {name: text for name, text in os.environ.items() if not name.startswith("LC_")}
+    ended = subprocess.run(
+        [sys.executable, "-c", VERBS, *calls],
+        cwd=folder,
+        env=kept | UNUSUAL,
+        check=False,
+        capture_output=True,
+    )
+    assert ended.returncode == 0, ended.stderr.decode(errors="replace")
+    return contents(folder)
 
 
 @pytest.mark.slow
-def test_files_are_the_same_in_another_environment(written):
-    usual, unusual = written(USUAL), written(UNUSUAL)
+@pytest.mark.drawn
+def test_files_are_the_same_in_another_environment(usual, unusual):
     assert unusual.keys() == usual.keys()
     assert {"set.toml", "terrain.model", "across/report.html", "grass/result.json"} <= usual.keys()
     assert [name for name in usual if unusual[name] != usual[name]] == []

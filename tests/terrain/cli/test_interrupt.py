@@ -69,11 +69,12 @@ def simulate(setup, out, seed="1", **options):
 
 
 @pytest.mark.parametrize(
-    ("name", "code", "word"), [("SIGINT", 130, "Interrupted"), ("SIGTERM", 143, "Terminated")]
+    ("moment", "name"),
+    [("working", "SIGINT"), ("working", "SIGTERM"), ("writing", "SIGTERM"), ("moving", "SIGINT")],
 )
-@pytest.mark.parametrize("moment", WHILE)
-def test_an_interrupt_says_in_one_line_what_it_left(tmp_path, name, code, word, moment):
+def test_an_interrupt_says_in_one_line_what_it_left(tmp_path, moment, name):
     out = tmp_path / "run"
+    code, word = {"SIGINT": (130, "Interrupted"), "SIGTERM": (143, "Terminated")}[name]
     answer = simulate(WHILE[moment].format(stop=STOP.format(signal=name)), out)
     assert answer.returncode == code, answer.stderr
     if moment == "moving":

@@ -50,22 +50,34 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("change", KINDS.values(), ids=KINDS)
-def test_images_of_other_kinds_have_the_labels_of_their_bytes(change, across_run, classifier):
+@pytest.fixture(scope="module")
+def labels_of(across_run, classifier):
+    """Labels of images of the run, and why there is none."""
     run = Run.read(across_run)
     camera = Camera.from_table(run.settings["camera"])
-    frames = [replace(f, image=f.image and read_image(f.image)) for f in list(run.frames())[:60]]
+
+    def of(frames):
+        live = LiveOdometry(run.robot, camera=camera, model=classifier)
+        labels = [step.image_label for step in map(live.step, frames) if step and step.image_label]
+        return [(label.label, label.reason) for label in labels]
+
+    return of
+
+
+@pytest.fixture(scope="module")
+def shown(across_run, labels_of):
+    """Frames of the run with their bytes, and the labels of these."""
+    frames = list(Run.read(across_run).frames())[:60]
+    frames = [replace(frame, image=frame.image and read_image(frame.image)) for frame in frames]
+    return frames, labels_of(frames)
+
+
+@pytest.mark.parametrize("change", KINDS.values(), ids=KINDS)
+def test_images_of_other_kinds_have_the_labels_of_their_bytes(change, shown, labels_of):
+    frames, labels = shown
     changed = [replace(f, image=None if f.image is None else change(f.image)) for f in frames]
-    labels = [
-        [
-            (step.image_label.label, step.image_label.reason)
-            for step in map(LiveOdometry(run.robot, camera=camera, model=classifier).step, some)
-            if step and step.image_label
-        ]
-        for some in (frames, changed)
-    ]
-    assert any(label for label, _ in labels[0])
-    assert labels[0] == labels[1]
+    assert any(label for label, _ in labels)
+    assert labels_of(changed) == labels
 
 
 def test_what_is_no_image_has_no_label_and_ends_nothing(across_run, classifier):

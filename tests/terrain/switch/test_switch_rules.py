@@ -97,7 +97,7 @@ class AnyDriveByEvidence(AnyDrive):
     needed = 0
 
 
-for case in (AnyDrive.TestCase, AnyDriveByEvidence.TestCase):
-    case.settings = settings(max_examples=40, stateful_step_count=20, deadline=None)
 TestAnyDrive = AnyDrive.TestCase
 TestAnyDriveByEvidence = AnyDriveByEvidence.TestCase
+DRAWN = settings(max_examples=40, stateful_step_count=20, deadline=None)
+TestAnyDrive.settings = TestAnyDriveByEvidence.settings = DRAWN
