@@ -93,24 +93,30 @@ def test_a_velocity_of_yaw_alone_teaches_the_width_too():
     assert width == pytest.approx((ICRS[0] - ICRS[1]) / np.mean(ALPHAS), rel=0.05)
 
 
-def test_a_whole_velocity_teaches_slip_and_the_icr_ahead(rng):
-    driven = drive(60.0)
+def measured_velocities(driven, rng):
+    """vx, vy and wz (N, 3) of a drive, with noise."""
     omega = driven.yaw_rates_rad_s
     effective = np.vstack([driven.speeds_m_s[:1], driven.speeds_m_s[:-1]]) * ALPHAS
     velocities = np.column_stack([effective[:, 0] + ICRS[0] * omega, -ICRS[2] * omega, omega])
-    velocities += rng.normal(0, 0.01, velocities.shape)
-    last = estimates_of(frames_of(driven, velocities=velocities, yaw_rates=omega))[-1]
+    return velocities + rng.normal(0, 0.01, velocities.shape)
+
+
+def test_a_whole_velocity_teaches_slip_and_the_icr_ahead(rng):
+    driven = drive(60.0)
+    velocities = measured_velocities(driven, rng)
+    last = estimates_of(frames_of(driven, velocities=velocities, yaw_rates=driven.yaw_rates_rad_s))[
+        -1
+    ]
     np.testing.assert_allclose(last.mean[3:6], ICRS, atol=0.06)
     np.testing.assert_allclose(last.alphas, ALPHAS, atol=0.04)
 
 
 def test_single_velocities_far_off_move_no_icr(rng):
     driven = drive(60.0)
-    omega = driven.yaw_rates_rad_s
-    effective = np.vstack([driven.speeds_m_s[:1], driven.speeds_m_s[:-1]]) * ALPHAS
-    velocities = np.column_stack([effective[:, 0] + ICRS[0] * omega, -ICRS[2] * omega, omega])
-    velocities += rng.normal(0, 0.01, velocities.shape)
-    velocities[len(omega) // 2 :: 40] += [5.0, -3.0, 2.0]
-    last = estimates_of(frames_of(driven, velocities=velocities, yaw_rates=omega))[-1]
+    velocities = measured_velocities(driven, rng)
+    velocities[len(velocities) // 2 :: 40] += [5.0, -3.0, 2.0]
+    last = estimates_of(frames_of(driven, velocities=velocities, yaw_rates=driven.yaw_rates_rad_s))[
+        -1
+    ]
     np.testing.assert_allclose(last.mean[3:6], ICRS, atol=0.06)
     np.testing.assert_allclose(last.alphas, ALPHAS, atol=0.04)
