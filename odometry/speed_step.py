@@ -12,6 +12,7 @@ from odometry.run import Run
 DIGITS = 1e-5  # of the fastest speed: less are last digits of ticks over uneven stamps
 LEAST_CHANGES = 15  # of a tread speed, and as a share of the rows: else it is a held command
 CHANGING = 0.005
+SEVERAL = 0.1  # share of the rows with more than one tick
 # Of the ordinary fastest speed: steps that matter, and those that the mean speeds may have over the
 # time for which treads and gyroscope are compared. Real recordings put into steps of 0.02 gain
 # nothing from it, of 0.1 they do.
@@ -55,8 +56,24 @@ def step_of(values: FloatArray) -> float | None:
     changes = changes[changes > DIGITS * np.abs(values).max(initial=0.0)]
     if len(changes) < max(LEAST_CHANGES, CHANGING * len(values)):
         return None
-    step = float(np.quantile(changes, 0.02))
-    counts = changes / step
+    return _step_of_sizes(changes)
+
+
+def tick_of(values: FloatArray, periods_s: FloatArray) -> float | None:
+    """The way [m] of which those of all rows (N,) are multiples; None where there is none.
+
+    An encoder's tick, where stamps are uneven and speeds (N,) come in no step. Rows that nearly
+    all have one way show none: their one speed is held.
+    """
+    ways_m = np.abs(values * periods_s)
+    moved = ways_m[ways_m > DIGITS * ways_m.max(initial=0.0)]
+    tick_m = _step_of_sizes(moved) if len(moved) >= LEAST_CHANGES else None
+    return tick_m if tick_m and np.mean(moved > 1.5 * tick_m) > SEVERAL else None
+
+
+def _step_of_sizes(sizes: FloatArray) -> float | None:
+    step = float(np.quantile(sizes, 0.02))
+    counts = sizes / step
     single = float(np.mean(np.abs(counts - 1) < 0.05))
     whole = float(np.mean(np.abs(counts - np.round(counts)) < 0.05 + 0.01 * counts))
     return step if whole > 0.95 and single > 0.1 else None

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import TREADS, changed, in_turn
 from odometry.checks.statistics.outliers import peaks, spikes
 from odometry.checks.treads.slow_speeds import EDGE, least_read_m_s
-from odometry.speed_step import step_of
+from odometry.speed_step import step_of, tick_of
 from odometry.windows.spans import runs_of
 
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
@@ -102,12 +102,30 @@ def _dropped(evidence: Evidence) -> Iterator[Finding]:
 def _zeros(evidence: Evidence, name: str) -> tuple[IntArray, float]:
     """Rows in which a tread is zero alone between two speeds of one sign, and their least size."""
     values = evidence.run.odometry[name]
-    least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_of(values) or 0.0))
-    zero = (np.abs(values[1:-1]) < 1e-9) & (np.abs(values[:-2]) > least_m_s)
-    zero &= np.abs(values[2:]) > least_m_s
+    step_m_s = step_of(values)
+    least_m_s = max(0.1 * evidence.fastest_m_s, STEPS * (step_m_s or 0.0))
+    moved = np.abs(values) > least_m_s
+    zero = (np.abs(values[1:-1]) < 1e-9) & moved[:-2] & moved[2:]
+    if step_m_s is None:
+        zero &= ~_is_less_than_a_tick(values, evidence.stamps_s)
     zero &= np.sign(values[:-2]) == np.sign(values[2:])
     zero &= np.diff(evidence.stamps_s)[1:] < STOP_S
     return np.flatnonzero(zero) + 1, least_m_s
+
+
+def _is_less_than_a_tick(values: FloatArray, stamps_s: FloatArray) -> BoolArray:
+    """Whether a row (N - 2,) between two others may hold no tick, at the speeds of these.
+
+    Where stamps are uneven a short row holds none at a speed that is many ticks in a long one. Of
+    the ticks of a row one may be of the way before it.
+    """
+    periods_s = np.diff(stamps_s, prepend=stamps_s[0])
+    tick_m = tick_of(values, periods_s)
+    if tick_m is None:
+        return np.zeros(len(values) - 2, bool)
+    least_m_s = (np.abs(values[1:]) * periods_s[1:] - tick_m) / periods_s[1:]
+    least_m_s = np.insert(least_m_s, 0, 0.0)
+    return np.minimum(least_m_s[:-2], least_m_s[2:]) * periods_s[1:-1] <= tick_m
 
 
 def _short_zeros(evidence: Evidence, name: str) -> IntArray:

@@ -8,7 +8,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.turns.turn_signs import lasting_turn_rad
-from odometry.speed_step import speed_step_m_s
+from odometry.speed_step import speed_step_m_s, tick_of
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 STILL_RAD = 0.1  # range of the heading of a stationary robot
@@ -29,7 +29,7 @@ def treads(evidence: Evidence) -> Iterator[Finding]:
 
 def _coarse(evidence: Evidence) -> Iterator[Finding]:
     """Readings that come in large steps, from one to the next and back."""
-    step = speed_step_m_s(evidence.speeds_m_s)
+    step = _step_m_s(evidence)
     if step < COARSE / 4 * evidence.fastest_m_s or step == 0:
         return
     much = is_coarse(evidence)
@@ -47,7 +47,17 @@ def _coarse(evidence: Evidence) -> Iterator[Finding]:
 
 def is_coarse(evidence: Evidence) -> bool:
     """Whether the steps are large against the ordinary fastest speed."""
-    return speed_step_m_s(evidence.speeds_m_s) > COARSE * evidence.fastest_m_s
+    return _step_m_s(evidence) > COARSE * evidence.fastest_m_s
+
+
+def _step_m_s(evidence: Evidence) -> float:
+    """The step of the speeds, or one tick in a usual period where stamps are uneven; else 0."""
+    step_m_s = speed_step_m_s(evidence.speeds_m_s)
+    if step_m_s:
+        return step_m_s
+    periods_s = np.diff(evidence.stamps_s, prepend=evidence.stamps_s[0])
+    ticks_m = (tick_of(values, periods_s) for values in evidence.speeds_m_s.T)
+    return min(filter(None, ticks_m), default=0.0) / evidence.period_s
 
 
 def _saturated(evidence: Evidence) -> Iterator[Finding]:
