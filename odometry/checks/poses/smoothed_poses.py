@@ -114,11 +114,15 @@ def _path(evidence: Evidence, grid_s: FloatArray) -> AnyArray:
 
 
 def _averaged(columns: AnyArray, half: int) -> AnyArray:
-    """Moving mean over so many samples to either side; as it is at the ends."""
+    """Moving mean over so many samples to either side; as it is at the ends.
+
+    A sample that is NaN leaves its neighbours alone without a mean: no sums from the start.
+    """
     count = 2 * half + 1
-    summed = np.cumsum(np.insert(columns, 0, 0.0, axis=1), axis=1)
     averaged = columns.copy()
-    averaged[:, half : columns.shape[1] - half] = (summed[:, count:] - summed[:, :-count]) / count
+    weights = np.full(count, 1 / count)
+    inside = slice(half, columns.shape[1] - half)
+    averaged[:, inside] = [np.convolve(column, weights, "valid") for column in columns]
     return averaged
 
 

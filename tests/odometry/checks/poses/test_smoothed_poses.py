@@ -48,6 +48,15 @@ def test_smoothed_poses_are_found_with_the_time(alter, seconds):
     assert "cut corners short" in finding.cause
 
 
+@pytest.mark.parametrize("first_s", [1.0, 25.0])
+def test_a_gyroscope_that_starts_later_than_the_poses_is_compared_from_there_on(first_s):
+    """Not measured before: no number there, and every sum from the start would be none."""
+    run = smoothed(winding(), 2.0)
+    of = run.odometry
+    gyro_z = np.where(of.stamps_s - of.stamps_s[0] < first_s, np.nan, of["gyro_z"])
+    assert [one.name for one in found_in(put(run, "odometry", gyro_z=gyro_z))] == ["smoothed_poses"]
+
+
 def test_positions_that_are_smooth_beside_a_sharp_yaw_are_something_else():
     assert found_in(smoothed(winding(), 2.0, ("x", "y"))) == []
 
