@@ -15,6 +15,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry.angles import wrap
 from odometry.run import Run
 from odometry.sensors import YawRate, gyroscope_of
+from odometry.windows.measured_poses import YAW_FOUND
 
 WINDOW_S, EVERY_S = 5.0, 0.5
 LEAST_POSES, LEAST_SHARE = 15, 0.8  # of a window, and of its time
@@ -26,7 +27,9 @@ BIAS_ERROR_RAD_S = 0.0015  # of a window's bias, for the same reasons
 USEFUL_BIAS_RAD_S = 0.0025  # standard deviation up to which a bias is taken
 MOST_LATE_S = 0.1  # of poses: later ones determine no bias, the fit is linear in the delay
 SCALE_TOLERANCE, SCALE_SIGMAS = 0.05, 4.0  # beyond both a scale is off
-TOGETHER_S = 15.0  # for which windows determine the scale together, too
+TOGETHER_S = (
+    15.0  # for which windows determine the scale together, beside those of all the run so far
+)
 """Round numbers by which the scale is taken for off in 1 % of the windows of data/motion."""
 
 
@@ -42,6 +45,8 @@ class HeadingCheck:
         Of the gyroscope, if its scale is right.
     scale, scale_sigma : (K,)
         The gyroscope reads so many times what the headings turn.
+    found : bool
+        Whether the headings were found from positions, and not measured.
     """
 
     stamps_s: FloatArray
@@ -49,13 +54,20 @@ class HeadingCheck:
     bias_sigma_rad_s: FloatArray
     scale: FloatArray
     scale_sigma: FloatArray
+    found: bool = False
 
     @property
     def scale_is_off(self) -> BoolArray:
-        """Where (K,) the headings of a window, or of some seconds, show that the scale is not 1."""
-        pairs = ((self.scale, self.scale_sigma), self.scale_together)
+        """Where (K,) headings show that the scale is not 1: of a window, or of some seconds.
+
+        Those that were found from positions follow the gyroscope for some seconds, and say little
+        of its scale there: of them all of the run so far count as well. Measured ones do not:
+        those of real runs are off by up to a tenth together, and found ones by a twentieth.
+        """
+        over = (TOGETHER_S, np.inf) if self.found else (TOGETHER_S,)
+        pairs = ((self.scale, self.scale_sigma), *map(self.scale_over, over))
         off = [np.abs(scale - 1) > SCALE_TOLERANCE + SCALE_SIGMAS * of for scale, of in pairs]
-        return np.asarray(off[0] | off[1])
+        return np.any(off, axis=0)
 
     @property
     def scale_is_right(self) -> BoolArray:
@@ -63,14 +75,13 @@ class HeadingCheck:
         off = np.abs(self.scale - 1)
         return np.asarray(off + self.scale_sigma < 2 * SCALE_TOLERANCE) & ~self.scale_is_off
 
-    @property
-    def scale_together(self) -> tuple[FloatArray, FloatArray]:
-        """Mean (K,) of the scales of TOGETHER_S, weighted, and its standard deviation.
+    def scale_over(self, seconds: float) -> tuple[FloatArray, FloatArray]:
+        """Mean (K,) of the scales of so many seconds, weighted, and its standard deviation.
 
         Windows overlap: as many as lie in one count as one.
         """
         weights = self.scale_sigma**-2.0
-        first = np.searchsorted(self.stamps_s, self.stamps_s - TOGETHER_S + 1e-9)
+        first = np.searchsorted(self.stamps_s, self.stamps_s - seconds + 1e-9)
         sums = np.concatenate(
             [np.zeros((1, 2)), np.cumsum(np.column_stack([weights, weights * self.scale]), axis=0)]
         )
@@ -119,7 +130,7 @@ def heading_check(run: Run) -> HeadingCheck | None:
         known = end - begin >= LEAST_POSES
         if known and stamps_s[end - 1] - stamps_s[begin] >= LEAST_SHARE * WINDOW_S:
             rows.append([end_s, *_fitted(table[begin:end], piece[begin:end], sigma_rad)])
-    return HeadingCheck(*np.array(rows).T) if rows else None
+    return HeadingCheck(*np.array(rows).T, found=YAW_FOUND in run.pose) if rows else None
 
 
 def _fitted(table: FloatArray, piece: IntArray, sigma_rad: float) -> tuple[float, ...]:

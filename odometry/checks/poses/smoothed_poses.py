@@ -120,6 +120,8 @@ def _averaged(columns: AnyArray, half: int) -> AnyArray:
     """
     count = 2 * half + 1
     averaged = columns.copy()
+    if columns.shape[1] < count:
+        return averaged
     weights = np.full(count, 1 / count)
     inside = slice(half, columns.shape[1] - half)
     averaged[:, inside] = [np.convolve(column, weights, "valid") for column in columns]

@@ -6,7 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.modes.heading_check import EVERY_S, TOGETHER_S, WINDOW_S, heading_check
+from odometry.modes.heading_check import (
+    EVERY_S,
+    TOGETHER_S,
+    WINDOW_S,
+    HeadingCheck,
+    heading_check,
+)
 from odometry.run import Robot, Run
 from odometry.table import Table
 
@@ -118,3 +124,25 @@ def test_without_headings_or_gyroscope_there_is_no_check(lacks):
         columns["yaw"] = np.full(len(run.pose.stamps_s), np.nan)
         run = replace(run, pose=Table(Path("p.csv"), columns, np.arange(600) + 2))
     assert heading_check(run) is None
+
+
+def weak_check(scale, sigma, *, found):
+    """Two minutes of windows that determine the scale by so much each."""
+    ends_s = WINDOW_S + EVERY_S * np.arange(240)
+    nothing = np.zeros(len(ends_s))
+    scales = scale + 0.3 * sigma * np.sin(ends_s)
+    return HeadingCheck(ends_s, nothing, nothing, scales, nothing + sigma, found)
+
+
+def test_headings_found_from_positions_show_a_scale_over_the_run():
+    """Of two minutes of windows 24 do not overlap: 0.09 becomes 0.018, and 0.15 is off by it."""
+    check = weak_check(1.15, 0.09, found=True)
+    assert not check.scale_is_off[check.stamps_s < 30.0].any()
+    assert check.scale_is_off[check.stamps_s > 100.0].all()
+    assert not check.scale_is_right[check.stamps_s > 100.0].any()
+    assert not weak_check(1.06, 0.09, found=True).scale_is_off.any()
+
+
+def test_measured_headings_show_a_scale_in_some_seconds_alone():
+    """All those of a real run are off together by up to a tenth."""
+    assert not weak_check(1.15, 0.09, found=False).scale_is_off.any()
