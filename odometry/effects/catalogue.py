@@ -58,7 +58,7 @@ from odometry.effects.measurement.reference_rounding import RoundedPositions
 from odometry.effects.measurement.reference_step import ClockStep
 from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.measurement.straight_lines import StraightLines
-from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.measurement.time_offset import ClockDrift, LatePositions, TimeOffset
 from odometry.effects.motion.contact_effects import InertiaByContact, SlopeByContact
 from odometry.effects.motion.curvature import Curvature
 from odometry.effects.motion.inertia_icr import InertiaByIndices
@@ -101,6 +101,7 @@ EFFECTS: tuple[type[Effect], ...] = (
     InertiaByIndices,
     InertiaByContact,
     TimeOffset,
+    LatePositions,
     ClockDrift,
     ClockStep,
     LeverArm,

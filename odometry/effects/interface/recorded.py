@@ -94,11 +94,14 @@ class Reported:
     run : int or None
         Number of the run among those that effects were fitted to, and those after them that they
         are judged by; None: another, of which nothing that is a run's own is known.
+    yaw_is_found : bool
+        Whether the yaw was found from positions and a gyroscope, and not measured.
     """
 
     stamps_s: FloatArray
     poses: FloatArray
     run: int | None = None
+    yaw_is_found: bool = False
 
     @property
     def yaw_rad(self) -> FloatArray:

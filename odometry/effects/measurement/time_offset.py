@@ -7,7 +7,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.effects.commands.late_treads import BY_GYROSCOPE
-from odometry.effects.interface.base import EffectParameter, MeasurementEffect
+from odometry.effects.interface.base import Effect, EffectParameter, MeasurementEffect
+from odometry.effects.interface.recorded import Recorded, Reported
+from odometry.windows.measured_poses import positions_at
 
 
 class TimeOffset(MeasurementEffect):
@@ -39,6 +41,42 @@ class TimeOffset(MeasurementEffect):
     ) -> FloatArray:
         """See `MeasurementEffect.delay_s`."""
         return np.full_like(stamps_s, values[0])
+
+
+class LatePositions(MeasurementEffect):
+    """Stamps of positions that are late, where the yaw was found from these.
+
+    From one position to the next such a yaw follows the gyroscope, or the treads, whose stamps are
+    right: it is not late.
+    """
+
+    name = "time_offset"
+    form = "of_positions"
+    in_words = "stamps of positions that are late or early"
+    equation = "(x, y)(t) -> (x, y)(t - offset); offset > 0: stamps are late"
+    source = "definition"
+    looks_like = "a robot at the position of a moment ago, with the heading of now"
+    remedy = "synchronise the clocks, or move the stamps of the positions by the offset"
+    needs = "a yaw that was found from positions"
+    of_reference = True
+    by_pose = False
+    alike: ClassVar[Mapping[str, str]] = TimeOffset.alike
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """Where no run has a measured yaw."""
+        found = [of.yaw_is_found for of in recorded.reported]
+        return (cls(),) if found and all(found) else ()
+
+    @property
+    def parameters(self) -> tuple[EffectParameter, ...]:
+        """See `Effect.parameters`."""
+        return (EffectParameter("offset", "s", -1.0, 1.0, 0.1, 0.02),)
+
+    def seen(self, values: FloatArray, poses: FloatArray, reported: Reported) -> FloatArray:
+        """See `MeasurementEffect.seen`; held beyond the ends of a run."""
+        positions = positions_at(reported.stamps_s - values[0], reported.stamps_s, poses)
+        return np.concatenate([positions, poses[:, 2:]], axis=1)
 
 
 class ClockDrift(MeasurementEffect):

@@ -13,7 +13,7 @@ from odometry.effects.commands.by_side import DelayBySide
 from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.interface.base import CommandEffect
 from odometry.effects.interface.corrected import Added, delay_s
-from odometry.effects.measurement.time_offset import ClockDrift, TimeOffset
+from odometry.effects.measurement.time_offset import ClockDrift, LatePositions, TimeOffset
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.agreement import POSITIONS, Disagreement
@@ -99,8 +99,12 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
     late = any(isinstance(one.effect, CommandEffect) for one in before)
     if not late or added.effect.name != TimeOffset.name:
         return ""
+    positions_s = float(added.values[0]) if isinstance(added.effect, LatePositions) else 0.0
     periods_s = [float(np.median(np.diff(one.run.odometry.stamps_s))) for one in scenes]
-    off_s = max(float(np.abs(delay_s((added,), one.pose_s, run_of(one))).max()) for one in scenes)
+    off_s = max(
+        float(np.abs(positions_s + delay_s((added,), one.pose_s, run_of(one))).max())
+        for one in scenes
+    )
     if off_s > max(periods_s):
         return ""
     return (

@@ -16,6 +16,7 @@ from odometry.effects.interface.corrected import (
 from odometry.effects.interface.recorded import Reported
 from odometry.effects.interface.time_course import run_numbers
 from odometry.windows.dense import DenseWindows, off_measured, poses_at
+from odometry.windows.measured_poses import YAW_FOUND
 from odometry.windows.motion import level_path
 
 TOGETHER = 40  # rows of a window that are whitened at once
@@ -49,7 +50,9 @@ def measured_s(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Flo
 
 def reported_of(scene: DenseWindows) -> Reported:
     """What the reference reported of a run."""
-    return Reported(scene.pose_s, scene.poses, run_of(scene))
+    pose = scene.run.pose
+    found = pose is not None and YAW_FOUND in pose
+    return Reported(scene.pose_s, scene.poses, run_of(scene), yaw_is_found=found)
 
 
 def run_of(scene: DenseWindows) -> int:

@@ -10,9 +10,10 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
-from odometry.gap.prepare.simulate import residuals, simulated_poses
+from odometry.gap.prepare.simulate import reported_of, residuals, simulated_poses
 from odometry.geometry import se2
 from odometry.windows.dense import dense_windows_of
+from odometry.windows.measured_poses import YAW_FOUND
 from odometry.windows.run_inputs import inputs_of
 
 ARM = np.array([0.4, -0.3])
@@ -137,3 +138,11 @@ def test_headings_differ_by_whole_turns_too(turning, known):
         slower = replace(known.base, values=known.base.values * [1, 1, 1, share, share])
         found = residuals(slower, (), replace(scene, poses=exact))
         np.testing.assert_allclose(found[..., 2], (1 - share) * after_s, atol=1e-11)
+
+
+def test_a_yaw_that_was_found_from_positions_is_reported_as_such(make_scene):
+    scene = make_scene(3, duration_s=40.0)
+    assert not reported_of(scene).yaw_is_found
+    pose = scene.run.pose
+    found = replace(pose, columns={**pose.columns, YAW_FOUND: np.full(len(pose), 0.05)})
+    assert reported_of(replace(scene, run=replace(scene.run, pose=found))).yaw_is_found
