@@ -7,7 +7,7 @@ fit of that difference; poses that are late add a part in proportion to the yaw 
 fitted as well.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,7 +67,7 @@ class HeadingCheck:
         over = (TOGETHER_S, np.inf) if self.found else (TOGETHER_S,)
         pairs = ((self.scale, self.scale_sigma), *map(self.scale_over, over))
         off = [np.abs(scale - 1) > SCALE_TOLERANCE + SCALE_SIGMAS * of for scale, of in pairs]
-        return np.any(off, axis=0)
+        return np.asarray(np.any(off, axis=0))
 
     @property
     def scale_is_right(self) -> BoolArray:
@@ -130,7 +130,8 @@ def heading_check(run: Run) -> HeadingCheck | None:
         known = end - begin >= LEAST_POSES
         if known and stamps_s[end - 1] - stamps_s[begin] >= LEAST_SHARE * WINDOW_S:
             rows.append([end_s, *_fitted(table[begin:end], piece[begin:end], sigma_rad)])
-    return HeadingCheck(*np.array(rows).T, found=YAW_FOUND in run.pose) if rows else None
+    found = YAW_FOUND in run.pose
+    return replace(HeadingCheck(*np.array(rows).T), found=found) if rows else None
 
 
 def _fitted(table: FloatArray, piece: IntArray, sigma_rad: float) -> tuple[float, ...]:
