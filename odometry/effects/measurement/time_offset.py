@@ -46,8 +46,8 @@ class TimeOffset(MeasurementEffect):
 class LatePositions(MeasurementEffect):
     """Stamps of positions that are late, where the yaw was found from these.
 
-    From one position to the next such a yaw follows the gyroscope, or the treads, whose stamps are
-    right: it is not late.
+    From one position to the next such a yaw follows the gyroscope, whose stamps are right: it is
+    not late. Where it follows the treads, commands that act late look the same.
     """
 
     name = "time_offset"
@@ -57,14 +57,14 @@ class LatePositions(MeasurementEffect):
     source = "definition"
     looks_like = "a robot at the position of a moment ago, with the heading of now"
     remedy = "synchronise the clocks, or move the stamps of the positions by the offset"
-    needs = "a yaw that was found from positions"
+    needs = "a yaw that was found from positions and a gyroscope"
     of_reference = True
     by_pose = False
     alike: ClassVar[Mapping[str, str]] = TimeOffset.alike
 
     @classmethod
     def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
-        """Where no run has a measured yaw."""
+        """Where the yaw of each run was found by a gyroscope."""
         found = [of.yaw_is_found for of in recorded.reported]
         return (cls(),) if found and all(found) else ()
 

@@ -51,7 +51,8 @@ def measured_s(base: Base, effects: Sequence[Added], scene: DenseWindows) -> Flo
 def reported_of(scene: DenseWindows) -> Reported:
     """What the reference reported of a run."""
     pose = scene.run.pose
-    found = pose is not None and YAW_FOUND in pose
+    by_gyroscope = scene.inputs.yaw_rate_rad_s is not None
+    found = pose is not None and YAW_FOUND in pose and by_gyroscope
     return Reported(scene.pose_s, scene.poses, run_of(scene), yaw_is_found=found)
 
 

@@ -140,9 +140,16 @@ def test_headings_differ_by_whole_turns_too(turning, known):
         np.testing.assert_allclose(found[..., 2], (1 - share) * after_s, atol=1e-11)
 
 
-def test_a_yaw_that_was_found_from_positions_is_reported_as_such(make_scene):
+@pytest.mark.parametrize("yaw_rate", [None, 0.1])
+@pytest.mark.parametrize("column", [YAW_FOUND, "z"])
+def test_a_yaw_that_was_found_by_a_gyroscope_is_reported_as_such(make_scene, column, yaw_rate):
     scene = make_scene(3, duration_s=40.0)
-    assert not reported_of(scene).yaw_is_found
     pose = scene.run.pose
-    found = replace(pose, columns={**pose.columns, YAW_FOUND: np.full(len(pose), 0.05)})
-    assert reported_of(replace(scene, run=replace(scene.run, pose=found))).yaw_is_found
+    with_column = replace(pose, columns={**pose.columns, column: np.full(len(pose), 0.05)})
+    rates = None if yaw_rate is None else np.full(len(scene.inputs.time_s), yaw_rate)
+    scene = replace(
+        scene,
+        run=replace(scene.run, pose=with_column),
+        inputs=replace(scene.inputs, yaw_rate_rad_s=rates),
+    )
+    assert reported_of(scene).yaw_is_found == (column == YAW_FOUND and yaw_rate is not None)
