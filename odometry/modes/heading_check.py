@@ -27,9 +27,7 @@ BIAS_ERROR_RAD_S = 0.0015  # of a window's bias, for the same reasons
 USEFUL_BIAS_RAD_S = 0.0025  # standard deviation up to which a bias is taken
 MOST_LATE_S = 0.1  # of poses: later ones determine no bias, the fit is linear in the delay
 SCALE_TOLERANCE, SCALE_SIGMAS = 0.05, 4.0  # beyond both a scale is off
-TOGETHER_S = (
-    15.0  # for which windows determine the scale together, beside those of all the run so far
-)
+TOGETHER_S = 15.0  # for which windows determine the scale together, beside all of the run so far
 """Round numbers by which the scale is taken for off in 1 % of the windows of data/motion."""
 
 
