@@ -22,6 +22,7 @@ from tests.blind.faults import (
     substitutes,
     texts,
     treads,
+    velocities,
 )
 from tests.blind.faults.fault import UnsuitableError, says
 from tests.blind.faults.recordings import read_recording, write_recording
@@ -29,6 +30,7 @@ from tests.blind.faults.recordings import read_recording, write_recording
 ROOMS = (
     stamps,
     treads,
+    velocities,
     encoders,
     poses,
     frames,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tests.blind.faults import legal
+from tests.blind.faults import legal, velocities
 from tests.blind.faults.recordings import read_recording, write_recording
 
 CLEAN = ("warthog_grass", "husky_tile", "marmotte_boreal", "simulated_")
@@ -48,6 +48,7 @@ VARIANTS = (
     Variant("one_repeated_row", "one row twice", legal.one_repeated_row, POSE),
     Variant("backwards", "the drive in reverse", legal.backwards, POSE),
     Variant("png", "images as PNG, some in grey", legal.png, frozenset({"images"})),
+    Variant("velocities", "velocities of a sensor", velocities.right, POSE),
     Variant("carriage_returns", "lines end as on Windows", legal.carriage_returns),
 )
 

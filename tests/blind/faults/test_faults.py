@@ -20,6 +20,7 @@ FILES = {
     "rows_lost": {"odometry.csv"},
     "rows_in_disorder": {"odometry.csv"},
     "gyro_": {"odometry.csv"},
+    "velocity_": {"velocity.csv"},
     "pitch_": {"odometry.csv"},
     "roll_": {"odometry.csv"},
     "attitude_": {"odometry.csv"},
@@ -68,7 +69,7 @@ def test_faults_are_well_formed():
         assert fault.words
         assert not fault.harmless or fault.level == "note"
     named = np.mean([fault.named for fault in FAULTS.values()])
-    assert 0.25 < named < 0.5  # most of what goes wrong has no name in advance
+    assert 0.2 < named < 0.5  # most of what goes wrong has no name in advance
 
 
 @pytest.mark.parametrize(
