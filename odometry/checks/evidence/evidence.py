@@ -18,7 +18,7 @@ from odometry.checks.evidence.heading import (
 )
 from odometry.checks.evidence.motion import Motion, motion_between
 from odometry.checks.evidence.scatter import scattered
-from odometry.checks.evidence.way_direction import yaw_by_gyroscope
+from odometry.checks.evidence.way_direction import way_direction_rad, yaw_by_gyroscope
 from odometry.checks.statistics.relation import Relation, relation
 
 MOST_SHARP = 0.8  # share of the windows in sharp turns, from which these are used as well
@@ -27,6 +27,7 @@ MOST_TURN_RAD = 2.5  # between two poses, from which whole turns may be lost
 DEGREES_RAD_S = 7.0  # no robot turns faster: the gyroscope is in degrees per second
 UNRELATED = 0.3  # correlation below which turns have nothing in common
 SOME_TURN = 0.2  # rad, or m of difference of the treads, in half a second
+ELSEWHERE_RAD = np.pi / 4  # from the way to the yaw: no robot slides so much to one side
 CLEARLY = 0.3  # difference of concentrations or squared correlations that decides
 
 
@@ -69,8 +70,19 @@ class Evidence(CleanedRecording):
         read = raw.with_yaw(np.radians) if self.yaw_in_degrees else raw
         if self.run.sensors.pose_m is None:
             return read
-        yaw = read.yaw_rad if self.yaw_measured else self.gyroscope_yaw(read)
+        yaw = self._turned_yaw(read) if self.yaw_measured else self.gyroscope_yaw(read)
         return read.of_point(yaw, np.array(self.run.sensors.pose_m[:2]))
+
+    def _turned_yaw(self, read: Motion) -> FloatArray:
+        """Measured yaw (K, 2) of windows; with the way where it points elsewhere, as backwards.
+
+        Not where the treads turn the other way than the yaw: their signs turn the way round, too.
+        """
+        axis_rad = way_direction_rad(read, read.yaw_rad, self.turn_rad(read))
+        by_treads = relation(read.turn_rad, read.difference_m)
+        agrees = by_treads is not None and by_treads.slope > 0
+        elsewhere = agrees and abs(axis_rad) > ELSEWHERE_RAD
+        return read.yaw_rad + axis_rad if elsewhere else read.yaw_rad
 
     def gyroscope_yaw(self, motion: Motion) -> FloatArray:
         """Heading (K, 2) of windows of positions by the gyroscope, NaN where it is not known."""

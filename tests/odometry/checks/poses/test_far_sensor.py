@@ -9,7 +9,7 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.drives import turning_all_round, uneven
-from tests.odometry.checks.faulty import positions, put
+from tests.odometry.checks.faulty import positions, put, treads
 
 PLACES_M = [(0.5, 0.0), (-0.45, 0.15), (0.0, 0.7)]
 
@@ -83,3 +83,15 @@ def test_an_antenna_ahead_of_a_robot_that_mostly_turns_left_is_placed_rightly():
     (found,) = warned_of(measured_at(turning_all_round(), 1.2, 0.0))
     assert found.name == "far_sensor"
     assert place_of(found) == pytest.approx((1.2, 0.0, 0.0), abs=0.08)
+
+
+@pytest.mark.parametrize("fault", ["yaw_backwards", "yaw_off_by_90", "treads_both_reversed"])
+def test_beside_another_fault_a_place_that_is_stated_rightly_is_none(fault):
+    """What is stated is undone by the heading of the robot, not by a yaw that points elsewhere."""
+    run = measured_at(uneven(), 0.6, -0.2)
+    made = {
+        "yaw_backwards": lambda: put(run, "pose", yaw=run.pose["yaw"] + np.pi),
+        "yaw_off_by_90": lambda: put(run, "pose", yaw=run.pose["yaw"] + np.pi / 2),
+        "treads_both_reversed": lambda: treads(run, lambda left, right: (-left, -right)),
+    }[fault]()
+    assert [found.name for found in warned_of(stated(made, 0.6, -0.2))] == [fault]
