@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.checks.findings.unit_tables import tread_units
+from odometry.checks.findings.unit_tables import SLIPS, tread_units
 from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.velocity.velocity_ways import VelocityWays, velocity_ways
 
@@ -20,6 +20,10 @@ UNRELATED, CHANGES = 0.2, 0.2  # correlation about the means, of speeds that cha
 # A velocity for each one of the poses or the gyroscope; of the treads, which slip.
 RIGHT, OF_TREADS = (0.8, 1.25), (0.05, 1.25)
 DEGREES = (0.7, 1.4)  # times 57.3
+UNSCALED = (
+    "Either {} has another scale, or the sensor is turned or tilted, or does not measure in "
+    "proportion: these are not distinguished"
+)
 LEFT_OUT = "Correct velocity.csv, or leave it out, as `run` and `batch` do"
 
 
@@ -72,8 +76,9 @@ def _scaled(by: Relation, of: str) -> Finding | None:
         return _finding("velocity_reversed", seen, cause)
     if low <= by.slope <= high:
         return None
-    units = [one.words for one in tread_units(None) if low <= by.slope / one.factor <= high]
-    cause = f"vx is in {' or '.join(units)}" if units else "vx has another scale"
+    least = max(low, SLIPS)
+    units = [one.words for one in tread_units(None) if least <= by.slope / one.factor <= high]
+    cause = f"vx is in {' or '.join(units)}" if units else UNSCALED.format("vx")
     return _finding("velocity_unit", seen, cause)
 
 
@@ -160,7 +165,9 @@ def _of_turns(by: Relation, of: str) -> Finding | None:
         return _finding("velocity_reversed", seen, "wz is clockwise (axes with z down: NED, FRD)")
     if DEGREES[0] < np.radians(by.slope) < DEGREES[1]:
         return _finding("velocity_unit", seen, "wz is in degrees per second")
-    return None if low <= by.slope <= high else _finding("velocity_unit", seen, "Another scale")
+    if low <= by.slope <= high:
+        return None
+    return _finding("velocity_unit", seen, UNSCALED.format("wz"))
 
 
 def _never(ways: FloatArray) -> bool:

@@ -44,6 +44,8 @@ FAULTS = {
     "km/h": (lambda t, x, y, w, _: (t, 3.6 * x, 3.6 * y, w), "velocity_unit", "km/h"),
     "mm/s": (lambda t, x, y, w, _: (t, 1e3 * x, 1e3 * y, w), "velocity_unit", "mm/s"),
     "degrees": (lambda t, x, y, w, _: (t, x, y, np.degrees(w)), "velocity_unit", "degrees per"),
+    "no unit": (lambda t, x, y, w, _: (t, 7.3 * x, y, w), "velocity_unit", "turned or tilted"),
+    "turns by no unit": (lambda t, x, y, w, _: (t, x, y, 2 * w), "velocity_unit", "Either wz"),
     "backwards": (lambda t, x, y, w, _: (t, -x, -y, w), "velocity_reversed", "backwards"),
     "clockwise": (lambda t, x, y, w, _: (t, x, y, -w), "velocity_reversed", "wz is clockwise"),
     "map": (on_the_map, "velocity_axes", "axes of"),
