@@ -1,7 +1,8 @@
-"""Folders of photographs that are not what they seem: classes that vanish, copies, one video."""
+"""Folders of photographs that are not what they seem: classes that vanish, copies, pieces."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 import cv2
@@ -9,8 +10,14 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import counted
+from terrain.classification.photographs.cut_apart import cut_apart
 from terrain.classification.photographs.shifted_frames import shifted_frames
-from terrain.classification.photographs.thumbnails import ALIKE, THUMBNAIL_PX, thumbnail_of_half
+from terrain.classification.photographs.thumbnails import (
+    ALIKE,
+    THUMBNAIL_PX,
+    thumbnail_of_half,
+    views,
+)
 from terrain.errors import PatchError
 from terrain.spelling import BY_SPELLING, alike_names
 
@@ -99,18 +106,21 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
     """Photographs that look nearly like one of another group, each with that one.
 
     By the correlation of small blurred thumbnails: images of one scene, frames of a camera that
-    hardly moves, copies that were compressed again. Those without any contrast are like none.
-    And frames of a burst, by `shifted_frames`.
+    hardly moves, copies that were compressed again, turned by quarters or mirrored. Those without
+    any contrast are like none. And frames of a burst, by `shifted_frames`, and pieces of one
+    photograph, by `cut_apart`.
     """
     photos = list(group_of)
     thumbnails = np.stack([_thumbnail(photo) for photo in photos])
-    alike = thumbnails @ thumbnails.T
+    alike = np.full((len(photos), len(photos)), -1.0)
+    for view in views(thumbnails):
+        np.maximum(alike, thumbnails @ view.T, out=alike)
     group = np.unique(list(group_of.values()), return_inverse=True)[1]
     alike[group[:, None] == group] = -1.0
     nearest = alike.argmax(axis=1)
     found = np.flatnonzero(alike[np.arange(len(photos)), nearest] > ALIKE)
     pairs = {photos[int(i)]: photos[int(nearest[i])] for i in found}
-    for one, other in shifted_frames(group_of):
+    for one, other in chain(shifted_frames(group_of), cut_apart(group_of)):
         pairs.setdefault(one, other)
         pairs.setdefault(other, one)
     return sorted(pairs.items())

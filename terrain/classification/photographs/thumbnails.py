@@ -1,5 +1,6 @@
 """Small images of photographs, by which copies that were saved again are recognised."""
 
+from collections.abc import Iterator
 from functools import lru_cache
 
 import cv2
@@ -38,9 +39,22 @@ def thumbnail_text(image: ByteImage) -> str:
     return np.rint(LEVELS * values / largest).astype(np.int8).tobytes().hex()
 
 
+def views(thumbnails: FloatArray) -> Iterator[FloatArray]:
+    """Thumbnails (N, values) as they are, turned by quarters and mirrored: eight times (N, values).
+
+    Programs that make training sets larger save photographs like this, cameras held upright too.
+    """
+    squares = thumbnails.reshape(-1, THUMBNAIL_PX, THUMBNAIL_PX)
+    for quarters in range(4):
+        turned = np.rot90(squares, quarters, axes=(1, 2))
+        yield turned.reshape(thumbnails.shape)
+        yield turned[:, :, ::-1].reshape(thumbnails.shape)
+
+
 def looks_like_one(image: ByteImage, texts: frozenset[str]) -> bool:
-    """Whether an image looks nearly like one of those that `thumbnail_text` was taken of."""
-    return bool((_thumbnails(texts) @ thumbnail(image)).max(initial=0.0) > ALIKE)
+    """Whether an image, turned or mirrored, looks nearly like one that a text was taken of."""
+    own = np.concatenate(list(views(thumbnail(image)[None])))
+    return bool((_thumbnails(texts) @ own.T).max(initial=0.0) > ALIKE)
 
 
 @lru_cache(maxsize=1)

@@ -81,8 +81,8 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
         one, other = alike[0]
         yield (
             f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
-            f"and {other}: copies, or frames of one scene. What is held out is no test then; give "
-            "photographs of one scene the same photo_id in manifest.csv"
+            f"and {other}: copies, pieces, or frames of one scene. What is held out is no test "
+            "then; give photographs of one scene the same photo_id in manifest.csv"
         )
 
 

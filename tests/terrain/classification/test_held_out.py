@@ -98,6 +98,8 @@ def test_training_photographs_that_were_saved_again_do_not_count_as_held_out(rng
         cv2.imdecode(cv2.imencode(".jpg", photos[0], [cv2.IMWRITE_JPEG_QUALITY, 40])[1], 0),
         cv2.resize(photos[1], (420, 280), interpolation=cv2.INTER_AREA),
         np.repeat(cv2.convertScaleAbs(photos[2], alpha=0.8, beta=20)[..., None], 3, axis=2),
+        np.ascontiguousarray(np.rot90(photos[0])),
+        np.ascontiguousarray(np.fliplr(photos[1])),
     ):
         assert trained_on.holds(again)
     assert not any(map(trained_on.holds, photos[3:]))

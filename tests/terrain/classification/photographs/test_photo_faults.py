@@ -114,3 +114,33 @@ def test_shifted_frames_of_a_burst_look_alike(write, rng):
     alike = look_alikes({photo: str(photo) for photo in [*frames, *others]})
     assert [one for one, _ in alike] == frames
     assert look_alikes(dict.fromkeys(frames, "scene")) == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [np.fliplr, np.flipud, np.rot90, lambda image: np.rot90(image, 2), np.transpose],
+    ids=["mirrored", "upside down", "turned", "by half a turn", "transposed"],
+)
+def test_copies_that_were_turned_or_mirrored_look_alike(write, change):
+    first, image = write("sand/a.png")
+    smaller = cv2.resize(np.ascontiguousarray(change(image)), None, fx=0.8, fy=0.8)
+    second, _ = write("sand/z.jpg", smaller)
+    others = [write(f"sand/{n}.jpg")[0] for n in range(6)]
+    alike = look_alikes({photo: str(photo) for photo in [first, second, *others]})
+    assert alike == [(first, second), (second, first)]
+
+
+def test_pieces_of_one_photograph_look_alike(write, rng):
+    whole = cv2.GaussianBlur(rng.normal(size=(400, 600)), (0, 0), 2)
+    whole = np.clip(128 + 300 * whole, 0, 255)
+    pieces = [
+        write(f"sand/{row}_{column}.jpg", whole[row : row + 200, column : column + 200])[0]
+        for row in (0, 200)
+        for column in (0, 400)
+    ]
+    middle, _ = write("soil/0.jpg", whole[:200, 200:400])
+    photos = [*pieces, middle]
+    found = dict(look_alikes({photo: str(photo) for photo in photos}))
+    assert set(found) == set(photos)
+    assert found[middle] in {pieces[0], pieces[1]}
+    assert look_alikes(dict.fromkeys(photos, "one photograph")) == []
