@@ -13,14 +13,16 @@ def texture(rng, shape):
 
 
 def with_bars(image):
-    """Black above and below."""
-    image[:20] = image[-20:] = 0
+    """Black above and below smooth terrain."""
+    image = 128 + (image - 128) / 6
+    image[:40] = image[-40:] = 0
     return image
 
 
 def with_robot(image):
-    """One bumper at the lower border, bright and with stripes."""
-    image[-30:] = np.where(np.arange(image.shape[1]) // 12 % 2, 40, 230)
+    """One dark bumper at the lower border, with a bright edge."""
+    image[-40:] = 20
+    image[-44:-40] = 250
     return image
 
 
