@@ -8,7 +8,12 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.outputs.output_file import picture_source
 from terrain.classification.classifier import TerrainClassifier
-from terrain.classification.held_out import confusion, confusion_text, photo_votes
+from terrain.classification.held_out import (
+    balanced_accuracy_interval,
+    confusion,
+    confusion_text,
+    photo_votes,
+)
 from terrain.classification.neighbours.calibration import reliability, reliability_by_chance
 from terrain.classification.neighbours.validation import CrossValidation, balanced_accuracy
 from terrain.classification.photographs.patches import LabelledPatches
@@ -16,11 +21,16 @@ from terrain.cli.outputs import claim_picture
 
 
 def summary(classifier: TerrainClassifier, patches: LabelledPatches) -> str:
-    """Confusion, accuracies, calibration, k and rejection threshold of the cross-validation."""
+    """Confusion, accuracies, calibration, k and rejection threshold of the cross-validation.
+
+    The interval draws whole groups: what so few photographs leave possible.
+    """
     found = classifier.cross_validation_
     answers = found.probabilities.argmax(axis=1)
     names = _photo_names(patches, found)
-    photo_codes, photo_answers, _ = photo_votes(found.codes, found.probabilities, names)
+    *voted, rows = photo_votes(found.codes, found.probabilities, names)
+    groups = np.asarray(patches.groups)[found.rows[rows]]
+    low, high = balanced_accuracy_interval(*voted, groups, np.random.default_rng(0))
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
     return (
@@ -28,7 +38,8 @@ def summary(classifier: TerrainClassifier, patches: LabelledPatches) -> str:
         "(true terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_.tolist())}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
-        f"photograph's patches {balanced_accuracy(photo_codes, photo_answers):.3f}; "
+        f"photograph's patches {balanced_accuracy(*voted):.3f} (95 % interval {low:.3f} to "
+        f"{high:.3f}); "
         f"{calibration_words(found, names)}\n"
         f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
         f"{classifier.rejection_distance_:.4g} ({100 * classifier.rejected_share:g} % of known "

@@ -1,6 +1,7 @@
 """The verbs `train` and `classify`, from photographs to answers."""
 
 import json
+import re
 
 import cv2
 import numpy as np
@@ -103,6 +104,13 @@ def test_train_prints_confusion_k_and_threshold_and_what_comes_next(trained, pho
     assert "left out, smaller than 32 x 32 pixels" in answer.stderr
     assert str(photos / "gravel/small.png") in answer.stderr
     assert (loaded.patch_size_px, loaded.metres_per_pixel) == (32, 0.006)
+
+
+def test_train_prints_an_interval_of_so_few_photographs(trained, rng):
+    """All right: of two terrains of 6 groups each (not of 12 photographs), by Jeffreys."""
+    low = np.quantile(rng.beta(6.5, 0.5, (100_000, 2)).mean(axis=1), 0.025)
+    said = re.search(r"patches 1\.000 \(95 % interval (0\.\d{3}) to 1\.000\)", trained[1].stdout)
+    assert float(said[1]) == pytest.approx(low, abs=0.015)
 
 
 def test_classify_prints_what_the_classifier_says(trained, photos):
