@@ -28,9 +28,9 @@ def summary(classifier: TerrainClassifier, patches: LabelledPatches) -> str:
     found = classifier.cross_validation_
     answers = found.probabilities.argmax(axis=1)
     names = _photo_names(patches, found)
-    *voted, rows = photo_votes(found.codes, found.probabilities, names)
+    true, voted, rows = photo_votes(found.codes, found.probabilities, names)
     groups = np.asarray(patches.groups)[found.rows[rows]]
-    low, high = balanced_accuracy_interval(*voted, groups, np.random.default_rng(0))
+    low, high = balanced_accuracy_interval(true, voted, groups, np.random.default_rng(0))
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
     return (
@@ -38,7 +38,7 @@ def summary(classifier: TerrainClassifier, patches: LabelledPatches) -> str:
         "(true terrain down, answer across, %):\n\n"
         f"{confusion_text(table, classifier.classes_.tolist())}\n\n"
         f"balanced accuracy by patch {balanced_accuracy(found.codes, answers):.3f}, by vote of a "
-        f"photograph's patches {balanced_accuracy(*voted):.3f} (95 % interval {low:.3f} to "
+        f"photograph's patches {balanced_accuracy(true, voted):.3f} (95 % interval {low:.3f} to "
         f"{high:.3f}); "
         f"{calibration_words(found, names)}\n"
         f"{chosen} k {classifier.n_neighbors_}, rejection threshold "
