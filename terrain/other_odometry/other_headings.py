@@ -17,6 +17,9 @@ TURNED_RAD = 0.5  # a drive that turns by less says nothing about headings
 WIDTH_S = 1.0  # over which turns are taken: above the noise of a gyroscope and of poses
 FEWEST_TURNS = 10
 FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
+MOST_SHIFT_S, STEP_S = 3.5, 0.1  # by which its stamps may be off and its turns still follow
+FEWEST_TOLD = 30  # turns from which those of another drive are told from its own
+UNLIKE = 0.5  # correlation at the best shift: of 182 pairs of real drives 170 stay below
 MOST_RATIO = 10.0  # of its turns to the odometer's: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
 TILTED_DEG = 50.0  # no skid-steer robot drives there
@@ -37,10 +40,13 @@ class PoseFault:
         What is wrong, its cause, and what to do.
     counts : bool
         Whether its errors still mean something.
+    fits : bool
+        Whether a shift, a scale or a turn of its path could mean something.
     """
 
     note: str
     counts: bool = False
+    fits: bool = True
 
 
 def other_readings(spatial: SpatialTrajectory, named: str) -> dict[str, FloatArray]:
@@ -127,7 +133,8 @@ def pose_fault(
             "as of a topic that measures speeds alone and leaves the pose empty. Its errors are "
             "not counted"
         )
-    return _heading_fault(trajectory, judge.odometer, readings)
+    fault = _heading_fault(trajectory, judge.odometer, readings)
+    return fault or _unrelated(trajectory, judge)
 
 
 def _heading_fault(
@@ -152,8 +159,42 @@ def _heading_fault(
         )
     if _fits(-as_read, ours, FOLLOWS):
         note = "its turns are opposite to those of ours: z points down, or its sides are exchanged"
-        return PoseFault(f"{note}. Nothing is turned: the errors are of the path as given", True)
+        said = f"{note}. Nothing is turned: the errors are of the path as given"
+        return PoseFault(said, counts=True, fits=False)
     return None
+
+
+def _unrelated(trajectory: Trajectory, judge: Judge) -> PoseFault | None:
+    """Said of turns that follow those of odometer and reference at no shift of the stamps."""
+    reference = judge.reference
+    others = [judge.odometer]
+    if np.isfinite(reference.poses[:, 2]).all():
+        others.append(reference)
+    best = -1.0
+    for shift_s in np.arange(-MOST_SHIFT_S, MOST_SHIFT_S + STEP_S / 2, STEP_S):
+        moved = Trajectory(trajectory.stamps_s + shift_s, trajectory.poses)
+        best = max(best, *(_likeness(moved, other) for other in others))
+        if best > UNLIKE:
+            return None
+    return PoseFault(
+        f"its turns do not follow those of ours, whichever way its stamps are shifted by up to "
+        f"{MOST_SHIFT_S:g} s (correlation {best:.2f} at best): poses of another drive, by another "
+        "clock, or of a program that was lost. Unless it was lost, its errors mean nothing",
+        counts=True,
+        fits=False,
+    )
+
+
+def _likeness(trajectory: Trajectory, other: Trajectory) -> float:
+    """Correlation of the turns of two trajectories; 1 where these are too few or small to say."""
+    rows = _ends(trajectory, other)
+    turns, ours = (_turns(each, each.poses[:, 2], rows) for each in (trajectory, other))
+    if len(ours) < FEWEST_TOLD or np.ptp(np.cumsum(ours)) < TURNED_RAD:
+        return 1.0
+    turns = np.clip(turns, -np.abs(ours).max(), np.abs(ours).max())  # one jump is not a drive
+    if min(np.ptp(turns), np.ptp(ours)) < CONSTANT_RAD:
+        return 1.0
+    return float(np.corrcoef(turns, ours)[0, 1])
 
 
 def _ends(trajectory: Trajectory, odometer: Trajectory) -> FloatArray:

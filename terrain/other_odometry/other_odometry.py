@@ -156,9 +156,9 @@ def _judged(read: Read, judge: Judge) -> dict[str, Any]:
     fault = pose_fault(read.trajectory, judge, read.readings)
     if fault is None and read.turned:
         fault = PoseFault(f"{read.doubt}. Its errors are not counted: they would be those of axes")
-    if fault is not None and not fault.counts:
-        uncounted = replace(found, score=Score(0), scale=np.nan, turned_rad=np.nan)
-        return _table(uncounted, [fault.note])
+    if fault is not None and not (fault.counts and fault.fits):
+        score = found.score if fault.counts else Score(0)
+        return _table(replace(found, score=score, scale=np.nan, turned_rad=np.nan), [fault.note])
     late_s = late_by_s(read.trajectory, judge.odometer)
     doubts = [read.doubt, "" if late_s is None else late_note(late_s), fault.note if fault else ""]
     return _table(found, doubts)

@@ -201,6 +201,22 @@ def test_no_shift_is_suspected_of_noise_or_of_a_straight_drive(winding, tmp_path
         assert not any("stamps seem" in note for note in found["other/slam"]["notes"])
 
 
+@pytest.mark.parametrize("other", ["drive", "mirrored"])
+def test_a_path_of_another_drive_has_no_shift_scale_or_turn(winding, tmp_path, other):
+    """One sentence says why its errors mean nothing; a fit to it would mean as little."""
+    ours = read_trajectory(winding / "results" / "odometer.tum").plane
+    sign, start = (1, 4) if other == "drive" else (-1, 2)
+    turn = np.random.default_rng(start).uniform(-0.8, 0.8, 42)
+    yaw = np.cumsum(np.interp(ours.stamps_s, np.arange(0.0, 62.0, 1.5), sign * turn)) * 0.05
+    x, y = (np.cumsum(0.5 * 0.05 * of(yaw)) for of in (np.cos, np.sin))
+    poses = Trajectory(ours.stamps_s, np.column_stack([x, y, yaw]))
+    write_spatial_tum(tmp_path / "slam.tum", SpatialTrajectory.from_plane(poses))
+    found = others(winding, "--with", f"slam={tmp_path / 'slam.tum'}")[1]["others"]
+    (note,) = found["other/slam"]["notes"]
+    assert ("poses of another drive" if other == "drive" else "opposite") in note
+    assert found["other/slam"]["translation_m_per_m"]["mean"] > 0.1
+
+
 def test_odometry_of_a_run_folder_that_moved_is_named_and_can_be_given(finished, tmp_path):
     moved = tmp_path / "results"
     shutil.copytree(finished / "results", moved)
