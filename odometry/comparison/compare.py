@@ -10,6 +10,7 @@ from odometry.comparison.candidates import Candidate, GivenParameters, Identifie
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, evaluate_all, run_fitness
 from odometry.comparison.fitting import SplitModels, fit_models
+from odometry.comparison.parts_apart import parts_apart
 from odometry.comparison.result import Comparison
 from odometry.comparison.split import of_all, splits
 from odometry.comparison.statistics import Difference, differences
@@ -91,7 +92,7 @@ def compare(
         planned, candidates, config, fitted_to_all=on_all, show_progress=show_progress
     )
     evaluations, not_evaluated = evaluate_all(split_models, config)
-    names = tuple(candidate.label for candidate in candidates)
+    names = tuple(each.label for each in candidates)
     by_training_horizon = training_horizon_errors(
         planned,
         identified,
@@ -115,6 +116,7 @@ def compare(
         by_training_horizon=by_training_horizon,
         notes=notes,
         not_identified=_not_identified([*split_models, *on_all]),
+        apart=parts_apart(identified, split_models, evaluations, config),
     )
 
 
@@ -198,9 +200,8 @@ def _differences(
         for horizon_m in config.horizons_m:
             place = Place(robot, terrain, horizon_m)
             here = [evaluation for evaluation in evaluations if place.holds(evaluation)]
-            found += differences(
-                place, here, models, config, _found_yaw_sigma_rad(split_models, place)
-            )
+            sigma_rad = _found_yaw_sigma_rad(split_models, place)
+            found += differences(place, here, models, config, sigma_rad)
     return found
 
 

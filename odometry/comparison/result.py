@@ -42,6 +42,8 @@ class Comparison:
         What a reader should know of the runs.
     not_identified : Mapping of (robot, terrain, model) to tuple of str
         Why `identify` refuses the parameters of these models, which are evaluated all the same.
+    apart : Mapping of (robot, terrain) to str
+        Which runs do not fit one model.
     """
 
     models: tuple[str, ...]
@@ -56,6 +58,7 @@ class Comparison:
     by_training_horizon: tuple[HorizonErrors, ...] = ()
     notes: tuple[str, ...] = ()
     not_identified: Mapping[tuple[str, str, str], tuple[str, ...]] = field(default_factory=dict)
+    apart: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     @property
     def robots_and_terrains(self) -> tuple[tuple[str, str], ...]:
@@ -127,9 +130,11 @@ class Comparison:
         return tuple(f for f in self.fitness if f.robot == place.robot and f.run in runs)
 
     def sentences_at(self, place: Place) -> list[str]:
-        """What the numbers of one place say."""
+        """What the numbers of one place say, after what speaks against them."""
+        apart = self.apart.get((place.robot, place.terrain))
         summaries = self.summaries_at(place)
-        return sentences(place, summaries, self.differences_at(place), self.fitness_at(place))
+        said = sentences(place, summaries, self.differences_at(place), self.fitness_at(place))
+        return [*([apart] if apart else []), *said]
 
     def contradictions_at(self, place: Place) -> list[str]:
         """Those of `sentences_at` that contradict the order of the mean window errors."""

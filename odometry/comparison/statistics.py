@@ -13,6 +13,7 @@ from odometry.comparison.summary import QUANTITIES, Place, values_of
 from odometry.identification.fitted import NORMAL, deviations_within
 
 FEW_WINDOWS = 10  # fewer show too little of their own spread: Student's t widens the interval
+FEW_RUNS = 10  # fewer, too, show too little of how runs differ
 LEAST_BLOCKS = 5  # of a run, however long the blocks should be
 COVERED = (2.5, 97.5)  # percentiles of the 95 % interval
 ROUNDING = 1e-12  # a smaller value is one of arithmetic: models that are the same differ by it
@@ -49,6 +50,9 @@ def mean_interval(
     than FEW_WINDOWS it is as much wider as Student's t asks for (Hesterberg 2015, expanded
     percentiles); one value has no interval: it is infinite.
 
+    Fewer than FEW_RUNS that differ are too few to draw from: it is then as wide as Student's t asks
+    for at the least, by what lies between runs and what within (Satterthwaite).
+
     Parameters
     ----------
     values : (K,)
@@ -65,17 +69,42 @@ def mean_interval(
     sizes = np.array([len(of_run) for of_run in of_runs])
     drawn = rng.integers(len(of_runs), size=(draws, len(of_runs)))
     means = np.empty(drawn.size)
+    variances = np.zeros(len(of_runs))
     counts = np.bincount(drawn.ravel(), minlength=len(of_runs))
     places = np.split(np.argsort(drawn, axis=None, kind="stable"), np.cumsum(counts)[:-1])
-    for of_run, here in zip(of_runs, places, strict=True):
+    for i, (of_run, here) in enumerate(zip(of_runs, places, strict=True)):
         means[here] = _block_means(of_run, block, len(here), rng)
+        variances[i] = means[here].var()
     weights = sizes[drawn]
     totals = np.sum(weights * means.reshape(drawn.shape), axis=1) / np.sum(weights, axis=1)
     if len(values) == 1:
         return Interval(float(values[0]), -np.inf, np.inf)
-    ends = values.mean() + _widening(len(values)) * (np.percentile(totals, COVERED) - values.mean())
+    mean = float(values.mean())
+    ends = mean + _widening(len(values)) * (np.percentile(totals, COVERED) - mean)
     low, high = ends.tolist()
-    return Interval(float(values.mean()), low, high)
+    half = _half_of_runs(of_runs, variances, len(values) / block)
+    return Interval(mean, min(low, mean - half), max(high, mean + half))
+
+
+def _half_of_runs(of_runs: Sequence[FloatArray], variances: FloatArray, blocks: float) -> float:
+    """Half of the interval of a mean over runs (R,), each with the variance of its own mean.
+
+    What runs differ by beyond that variance is known from R - 1 differences alone.
+    """
+    if not 2 <= len(of_runs) < FEW_RUNS:
+        return 0.0
+    sizes = np.array([len(of_run) for of_run in of_runs])
+    weights = sizes / sizes.sum()
+    means = np.array([of_run.mean() for of_run in of_runs])
+    freedom = len(of_runs) - 1.0
+    all_of_it = np.sum((weights * (means - weights @ means)) ** 2) * len(of_runs) / freedom
+    within = float(np.sum(weights**2 * variances))
+    between = max(float(all_of_it) - within, 0.0)
+    if between == 0:
+        return 0.0
+    uncertain = between**2 / freedom + within**2 / max(blocks - len(of_runs), 1.0)
+    degrees = np.array(max((between + within) ** 2 / uncertain, 1.0))
+    return float(deviations_within(degrees) * np.sqrt(between + within))
 
 
 def _widening(count: int) -> float:

@@ -113,3 +113,26 @@ def test_the_seed_decides():
 )
 def test_an_interval_that_holds_zero(low, high, holds):
     assert Interval(0.5, low, high).holds_zero is holds
+
+
+@pytest.mark.parametrize(("count", "deviations"), [(2, 12.706), (3, 4.303), (6, 2.571)])
+def test_runs_that_differ_for_certain_have_the_interval_of_student(count, deviations):
+    """Every window of a run has its value: only the values of runs are drawn from anything."""
+    of_runs = np.arange(count) % 3 + 0.5 * np.arange(count)
+    found = interval(np.repeat(of_runs, 50), np.repeat(np.arange(count), 50), 5)
+    half = deviations * of_runs.std(ddof=1) / np.sqrt(count)
+    assert found.high - found.mean == pytest.approx(half, rel=1e-3)
+    assert found.mean - found.low == pytest.approx(half, rel=1e-3)
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_few_runs_that_differ_hold_the_truth(count):
+    """Runs differ three times as much as their windows explain: 0.82 and 0.89 when it was made."""
+    held = 0
+    for seed in range(200):
+        rng = np.random.default_rng([5, seed])
+        of_runs = rng.normal(0, 3 / np.sqrt(30), count)
+        values = rng.normal(0, 1, 30 * count) + np.repeat(of_runs, 30)
+        found = interval(values, np.repeat(np.arange(count), 30), 5, draws=300, seed=seed)
+        held += found.holds_zero
+    assert held / 200 > 0.78
