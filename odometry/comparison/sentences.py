@@ -31,7 +31,7 @@ def sentences(
         Of the runs of the place.
     """
     ranked = _ranked(summaries)
-    unranked = any(summary.not_identified for summary in summaries)
+    unranked = any(not summary.ranked for summary in summaries)
     others = "every other ranked model" if unranked else "every other model"
     said = []
     for quantity in QUANTITIES:
@@ -126,8 +126,8 @@ def _medians(place: Place, quantity: str, ranked: Mapping[str, Summary]) -> list
         f"Mean and median disagree on {place.terrain} in {quantity}: {first.model} has a smaller "
         f"error than {second.model} by the mean ({first.means[quantity]:.4f} against "
         f"{second.means[quantity]:.4f} {QUANTITIES[quantity]}) and a larger one by the median "
-        f"({first.medians[quantity]:.4f} against {second.medians[quantity]:.4f}): a few windows "
-        "with large errors decide the means."
+        f"({first.medians[quantity]:.4f} against {second.medians[quantity]:.4f}): windows with "
+        "large errors count for more in the means."
     ]
 
 

@@ -66,9 +66,12 @@ def parts_by_terrain(run: Run, name: str) -> dict[str, Part]:
 
 
 def halves(part: Part) -> tuple[Part, Part]:
-    """A part cut where half of its wheel travel is done."""
+    """A part cut where half of its wheel travel is done, of that between the first and last pose."""
     run = part.run
     step_m = np.append(np.diff(run.wheel_travel_m), 0.0) * part.rows
+    if run.pose is not None:
+        stamps_s, of_poses_s = run.odometry.stamps_s, run.pose.stamps_s
+        step_m *= (stamps_s >= of_poses_s[0]) & (stamps_s <= of_poses_s[-1])
     travel_m = np.cumsum(step_m)
     middle = int(np.searchsorted(travel_m, travel_m[-1] / 2))
     middle = min(max(middle, part.start + 1), part.stop - 1)

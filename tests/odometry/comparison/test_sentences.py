@@ -61,6 +61,7 @@ def test_a_model_that_was_not_evaluated_everywhere_is_not_ranked():
     summaries = [summarise(PLACE, evaluations, not_evaluated, m) for m in ("icr", "width", "part")]
     lines = sentences(PLACE, summaries, [difference("icr", "width", -0.1, -0.2, -0.05)])
     assert lines[0].startswith("icr has the smallest error")
+    assert lines[0].endswith("; every other ranked model has a larger one.")
     assert lines[-1] == "part is not in this comparison on grass: b: too few windows."
 
 
@@ -76,7 +77,7 @@ def test_mean_and_median_that_disagree_are_both_reported():
     assert translation == (
         "Mean and median disagree on grass in translation: width has a smaller error than "
         "icr by the mean (0.1700 against 0.2400 m per m) and a larger one by the median (0.0600 "
-        "against 0.0200): a few windows with large errors decide the means."
+        "against 0.0200): windows with large errors count for more in the means."
     )
     assert "rotation: width has a smaller error" in rotation
 

@@ -152,6 +152,15 @@ def test_halves_share_the_wheel_travel_on_their_terrain(make_run):
     assert not (first.rows & second.rows).any()
 
 
+def test_halves_share_the_wheel_travel_that_was_measured(make_run):
+    """Poses of the last 4 m of 10: half of these is reached at 8 s."""
+    rows = "".join(f"{t},1,1\n" for t in range(11))
+    poses = "".join(f"{t},{t},0,0\n" for t in range(6, 11))
+    run = Run.read(make_run(odometry=f"t,v_left,v_right\n{rows}", pose=f"t,x,y,yaw\n{poses}"))
+    first, second = halves(parts_by_terrain(with_named_terrain(run, None), "a")["ground"])
+    assert 7 <= first.stop == second.start <= 8
+
+
 def test_halves_of_a_robot_that_stands_are_not_empty(make_run):
     run = with_named_terrain(Run.read(make_run(odometry="t,v_left,v_right\n0,0,0\n1,0,0\n")), None)
     first, second = halves(parts_by_terrain(run, "a")["ground"])
