@@ -66,7 +66,7 @@ def parts_by_terrain(run: Run, name: str) -> dict[str, Part]:
 
 
 def halves(part: Part) -> tuple[Part, Part]:
-    """A part cut where half of its wheel travel is done, of that between the first and last pose."""
+    """A part cut where half of its wheel travel between its first and last pose is done."""
     run = part.run
     step_m = np.append(np.diff(run.wheel_travel_m), 0.0) * part.rows
     if run.pose is not None:

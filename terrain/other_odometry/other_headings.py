@@ -20,7 +20,9 @@ FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
 MOST_SHIFT_S, STEP_S = 3.5, 0.1  # by which its stamps may be off and its turns still follow
 FEWEST_TOLD = 30  # turns from which those of another drive are told from its own
 UNLIKE = 0.5  # correlation at the best shift: of 182 pairs of real drives 170 stay below
-MOST_RATIO = 10.0  # of its turns to the odometer's: beyond is another unit (57.3 in degrees)
+MOST_RATIO = (
+    10.0  # of its turns to the odometer's, or back: beyond is another unit (57.3 in degrees)
+)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
 TILTED_DEG = 50.0  # no skid-steer robot drives there
 # by format: shift that takes w, x, y, z as read to the other order, and both orders in words
@@ -217,6 +219,8 @@ def _turns(trajectory: Trajectory, yaw: FloatArray, ends_s: FloatArray) -> Float
 def _fits(turns: FloatArray, ours: FloatArray, least: float) -> bool:
     """Whether turns (K,) rise with ours by a correlation of `least`, in the same unit."""
     sizes = [float(np.sqrt(np.mean(each**2))) for each in (turns, ours)]
-    if not 0 < sizes[0] < MOST_RATIO * sizes[1] or np.ptp(turns) < CONSTANT_RAD:
+    if min(sizes) == 0 or not 1 / MOST_RATIO < sizes[0] / sizes[1] < MOST_RATIO:
+        return False
+    if np.ptp(turns) < CONSTANT_RAD:
         return False
     return float(np.corrcoef(turns, ours)[0, 1]) > least

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from odometry.evaluation.other_odometry import Judge
+from odometry.evaluation.relative import EvaluationConfig
 from odometry.geometry import se3
 from odometry.io.trajectory_files import read_trajectory, to_optical, write_trajectory
 from odometry.io.tum import write_spatial_tum
@@ -14,6 +16,7 @@ from odometry.run import Run
 from odometry.trajectory import SpatialTrajectory, Trajectory
 from terrain.cli.verbs.evaluate import evaluate
 from terrain.main_job import run_odometry
+from terrain.other_odometry.other_headings import pose_fault
 from terrain.other_odometry.other_stamps import late_by_s
 from terrain.results import write_results
 
@@ -215,6 +218,19 @@ def test_a_path_of_another_drive_has_no_shift_scale_or_turn(winding, tmp_path, o
     (note,) = found["other/slam"]["notes"]
     assert ("poses of another drive" if other == "drive" else "opposite") in note
     assert found["other/slam"]["translation_m_per_m"]["mean"] > 0.1
+
+
+def test_headings_that_are_too_rare_for_their_turns_are_not_in_degrees():
+    """Whole turns are counted, and more than half of one lies between two rows."""
+    at_s = np.arange(0.0, 120.0, 0.05)
+    rates = np.random.default_rng(1).uniform(-2.5, 2.5, 41)
+    yaw = np.cumsum(np.interp(at_s, np.arange(0.0, 121.0, 3.0), rates)) * 0.05
+    ours = Trajectory(at_s, np.column_stack([at_s, 0 * at_s, yaw]))
+    rare = Trajectory(at_s[::40], ours.poses[::40])
+    judge = Judge(ours, at_s, ours, ours, np.zeros(2), EvaluationConfig())
+    assert pose_fault(rare, judge, {}) is None
+    fault = pose_fault(Trajectory(at_s, ours.poses * [1, 1, 57.3]), judge, {})
+    assert "degrees, not in radians" in fault.note
 
 
 def test_odometry_of_a_run_folder_that_moved_is_named_and_can_be_given(finished, tmp_path):
