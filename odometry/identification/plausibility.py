@@ -62,6 +62,7 @@ NEAR_BOUND = 1e-2
 ABSURD = 0.1  # of the least usual gain: a robot that hardly moves shows no parameters
 FAR_RESIDUALS = 3.0  # times the poses' stated noise
 MOSTLY_OTHER = 5.0  # times it, from which most of the error is of something else
+ONE_WAY = 0.05  # share of the turns of all windows that go to the rarer side
 CAUSES = (
     "tread speeds in another unit (rad/s, RPM, mm/s), swapped or of the wrong sign; positions in "
     "degrees or kilometres; yaw in degrees or reversed; a wrong track_width; poses much worse than "
@@ -119,6 +120,26 @@ def turns_outside(fit: Fit, robot: Robot) -> str:
         f"x_icr = {x_m:.4g} m: the robot would turn about a point {point}. The reference is "
         f"probably {abs(x_m):.2g} m {side} the robot's origin: state it in [sensors] pose"
         + ("; or its positions are late, or late along one axis" * (fit.scale > FAR_RESIDUALS))
+    )
+
+
+def turns_one_way(fit: Fit) -> str:
+    """That gains of both sides were found from turns to one side; "" where both were driven.
+
+    How a robot turns to the other side may differ (where small differences of its treads do not
+    turn it, gains of the sides take that up), and no interval holds by how much.
+    """
+    windows = fit.windows
+    if isinstance(windows, Stretches) or not {"alpha_left", "alpha_right"} <= set(fit.names):
+        return ""
+    turns = windows.measured[:, 2]
+    left, right = turns[turns > 0].sum(), -turns[turns < 0].sum()
+    if min(left, right) >= ONE_WAY * (left + right):
+        return ""
+    side, other = ("left", "right") if left > right else ("right", "left")
+    return (
+        f"nearly all turns go to the {side}: alpha_left, alpha_right and ICRs hold for these, and "
+        f"intervals do not hold how the robot turns to the {other}; add turns to the {other}"
     )
 
 

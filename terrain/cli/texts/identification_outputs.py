@@ -78,7 +78,12 @@ def write_ros(ros: Path, runs: "Sequence[Run]", found: "Identification", comment
 
 def print_identification(found: "Identification") -> None:
     """Print the report of each terrain; what to doubt goes to standard error."""
-    from odometry.identification.plausibility import notes, short_windows, turns_outside
+    from odometry.identification.plausibility import (
+        notes,
+        short_windows,
+        turns_one_way,
+        turns_outside,
+    )
     from odometry.identification.position_notes import position_notes
     from odometry.identification.report import report
     from odometry.identification.shorter_windows import shortened
@@ -95,6 +100,7 @@ def print_identification(found: "Identification") -> None:
             shortened(windows, config.travel_m, taken_m),
             *notes(of_terrain.fit),
             turns_outside(of_terrain.fit, found.robot),
+            turns_one_way(of_terrain.fit),
             *_assumed(of_terrain),
             *_no_gain(of_terrain),
             of_terrain.halves and of_terrain.halves.note(),
