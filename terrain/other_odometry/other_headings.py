@@ -18,11 +18,9 @@ WIDTH_S = 1.0  # over which turns are taken: above the noise of a gyroscope and 
 FEWEST_TURNS = 10
 FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
 MOST_SHIFT_S, STEP_S = 3.5, 0.1  # by which its stamps may be off and its turns still follow
-FEWEST_TOLD = 30  # turns from which those of another drive are told from its own
+FEWEST_COMPARED = 30  # turns; fewer do not show another drive
 UNLIKE = 0.5  # correlation at the best shift: of 182 pairs of real drives 170 stay below
-MOST_RATIO = (
-    10.0  # of its turns to the odometer's, or back: beyond is another unit (57.3 in degrees)
-)
+MOST_RATIO = 10.0  # of both turns, either way: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
 TILTED_DEG = 50.0  # no skid-steer robot drives there
 # by format: shift that takes w, x, y, z as read to the other order, and both orders in words
@@ -191,7 +189,7 @@ def _likeness(trajectory: Trajectory, other: Trajectory) -> float:
     """Correlation of the turns of two trajectories; 1 where these are too few or small to say."""
     rows = _ends(trajectory, other)
     turns, ours = (_turns(each, each.poses[:, 2], rows) for each in (trajectory, other))
-    if len(ours) < FEWEST_TOLD or np.ptp(np.cumsum(ours)) < TURNED_RAD:
+    if len(ours) < FEWEST_COMPARED or np.ptp(np.cumsum(ours)) < TURNED_RAD:
         return 1.0
     turns = np.clip(turns, -np.abs(ours).max(), np.abs(ours).max())  # one jump is not a drive
     if min(np.ptp(turns), np.ptp(ours)) < CONSTANT_RAD:
