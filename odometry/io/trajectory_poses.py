@@ -9,6 +9,7 @@ from odometry.trajectory import SpatialTrajectory
 
 ZONE_S, MOST_ZONE_S = 900.0, 14 * 3600.0  # time zones differ by whole quarters of an hour
 GPS_S, WEEK_S = 315_964_800.0 - 18.0, 604_800.0  # from 1970, less the leap seconds since 2017
+MOST_TURN_RAD = 1.0  # of a step between two poses, by which it still shows where forward is
 SAME_ROTATION = 1e-6  # of an entry of a matrix
 ALONG = 1e-3  # of the way along: noise, and any bend, is larger
 LEVEL = 0.2  # height of a path over its extent: below, z points up
@@ -74,9 +75,14 @@ def _share_time(stamps_s: FloatArray, of_odometry_s: FloatArray) -> bool:
 
 
 def travel_axis(trajectory: SpatialTrajectory) -> int:
-    """Axis of the body (0 is x) along which it moves most; 0 where nothing moves."""
+    """Axis of the body (0 is x) along which it moves most; 0 where nothing moves.
+
+    Between poses that turn by more than a radian it may move along any: these do not count.
+    """
     moved = np.diff(trajectory.positions_m, axis=0)
-    body = np.einsum("nji,nj->ni", trajectory.poses[:-1, :3, :3], moved)
+    first, last = trajectory.poses[:-1, :3, :3], trajectory.poses[1:, :3, :3]
+    cosine = (np.einsum("nij,nij->n", first, last) - 1) / 2
+    body = np.einsum("nji,nj->ni", first, moved)[cosine > np.cos(MOST_TURN_RAD)]
     return int(np.argmax(np.sum(body**2, axis=0)))
 
 

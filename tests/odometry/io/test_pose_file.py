@@ -51,6 +51,11 @@ def test_poses_of_a_camera_are_doubted():
     assert "along its z axis; expected x forward" in doubt_of_axes(to_optical(moving))
 
 
+def test_poses_that_are_too_rare_for_the_turns_say_nothing_of_axes():
+    """After 8 s of this circle the chord to the next pose points to the side, and back."""
+    assert doubt_of_axes(driving(np.arange(0, 60, 8.0))) == ""
+
+
 def test_a_camera_in_a_map_whose_z_is_up_is_not_sent_to_optical_axes():
     moving = driving(np.linspace(0, 5, 11))
     turn = se3.pose(np.zeros(3), OPTICAL_FROM_CAMERA)  # the body alone, not the map
