@@ -22,6 +22,8 @@ FEWEST_COMPARED = 30  # turns; fewer do not show another drive
 UNLIKE = 0.5  # correlation at the best shift: of 182 pairs of real drives 170 stay below
 MOST_RATIO = 10.0  # of both turns, either way: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
+SAME_M = 1e-3  # no odometry follows a reference so closely over a metre and more
+STAMP_DIGITS = 4  # after the point, of seconds: files round them
 TILTED_DEG = 50.0  # no skid-steer robot drives there
 # by format: shift that takes w, x, y, z as read to the other order, and both orders in words
 OTHER_ORDERS = {
@@ -134,7 +136,7 @@ def pose_fault(
             "not counted"
         )
     fault = _heading_fault(trajectory, judge.odometer, readings)
-    return fault or _unrelated(trajectory, judge)
+    return fault or _unrelated(trajectory, judge) or _is_the_reference(trajectory, judge)
 
 
 def _heading_fault(
@@ -182,6 +184,24 @@ def _unrelated(trajectory: Trajectory, judge: Judge) -> PoseFault | None:
         "clock, or of a program that was lost. Unless it was lost, its errors mean nothing",
         counts=True,
         fits=False,
+    )
+
+
+def _is_the_reference(trajectory: Trajectory, judge: Judge) -> PoseFault | None:
+    """Said of poses that are those by which all are judged, perhaps of another origin."""
+    stamps, of_reference_s = (
+        np.round(each.stamps_s, STAMP_DIGITS) for each in (trajectory, judge.reference)
+    )
+    _, rows, of_reference = np.intersect1d(stamps, of_reference_s, return_indices=True)
+    own, known = trajectory.poses[rows, :2], judge.reference.poses[of_reference, :2]
+    if len(rows) < FEWEST_COMPARED or np.ptp(known, axis=0).max() < MOVED_M:
+        return None
+    if np.ptp(own - known, axis=0).max() > SAME_M:
+        return None
+    return PoseFault(
+        f"its positions are those of the reference within {1000 * SAME_M:g} mm: it is the "
+        "reference, or was made of it, and its errors measure nothing",
+        counts=True,
     )
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from odometry.geometry import se3
 from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
+from odometry.io.csv_table import read_csv_table
 from odometry.io.trajectory_files import read_trajectory
 from odometry.io.tum import write_spatial_tum
 from odometry.trajectory import SpatialTrajectory, Trajectory
@@ -74,6 +75,20 @@ def test_poses_that_never_move_are_named(winding):
         kept.rmdir()
     assert result["windows"] == 0
     assert "it never moves" in result["notes"][0]
+
+
+@pytest.mark.parametrize(("off_m", "named"), [(0.0, True), (0.01, False)])
+def test_the_reference_itself_measures_nothing(winding, tmp_path, off_m, named):
+    """With another origin and fewer digits, as programs write it; not what is a little off."""
+    kept = read_csv_table(winding / "results" / "reference.csv", ["t", "x", "y", "yaw"])
+    off = off_m * np.sin(kept.stamps_s)
+    rows = zip(kept.stamps_s, kept["x"] + 5.0 + off, kept["y"] - 2.0, kept["yaw"], strict=True)
+    lines = [",".join(f"{cell:.4f}" for cell in row) for row in rows]
+    file = tmp_path / "slam.csv"
+    file.write_text("\n".join(["t,x,y,yaw", *lines]) + "\n")
+    result = found(winding, file)
+    assert result["windows"] > 0
+    assert any("it is the reference" in note for note in result["notes"]) is named
 
 
 def test_degrees_and_opposite_turns_are_named(winding, tmp_path):

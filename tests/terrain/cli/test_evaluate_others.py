@@ -226,7 +226,7 @@ def test_headings_that_are_too_rare_for_their_turns_are_not_in_degrees():
     rates = np.random.default_rng(1).uniform(-2.5, 2.5, 41)
     yaw = np.cumsum(np.interp(at_s, np.arange(0.0, 121.0, 3.0), rates)) * 0.05
     ours = Trajectory(at_s, np.column_stack([at_s, 0 * at_s, yaw]))
-    rare = Trajectory(at_s[::40], ours.poses[::40])
+    rare = Trajectory(at_s[::40], ours.poses[::40] * [1.01, 1.0, 1.0])
     judge = Judge(ours, at_s, ours, ours, np.zeros(2), EvaluationConfig())
     assert pose_fault(rare, judge, {}) is None
     fault = pose_fault(Trajectory(at_s, ours.poses * [1, 1, 57.3]), judge, {})
