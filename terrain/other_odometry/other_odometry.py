@@ -160,7 +160,11 @@ def _judged(read: Read, judge: Judge) -> dict[str, Any]:
         score = found.score if fault.counts else Score(0)
         return _table(replace(found, score=score, scale=np.nan, turned_rad=np.nan), [fault.note])
     late_s = late_by_s(read.trajectory, judge.odometer)
-    doubts = [read.doubt, "" if late_s is None else late_note(late_s), fault.note if fault else ""]
+    doubts = [
+        read.doubt,
+        "" if late_s is None else late_note(late_s, judge.odometer),
+        fault.note if fault else "",
+    ]
     return _table(found, doubts)
 
 

@@ -10,6 +10,7 @@ MOST_SHIFT_S = 3.5
 LEAST_SHIFT_S = 0.15
 LEAST_WIDTH_S = 0.5  # over which turn rates are taken
 CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
+UNLIKE, REPEATED = 0.3, 0.7  # correlation of turns with later ones: changed, and back again
 # Pieces of shorter runs are half as long, as if they took twice the time: of 272 stretches of 19
 # and 24 s of real recordings one is then called late or early that is not.
 SHORT_S, TIMES = 31.0, 2.0
@@ -51,11 +52,37 @@ def _heading(trajectory: Trajectory, times: float) -> Signal:
     return at
 
 
-def late_note(late_s: float) -> str:
-    """What is said of stamps that are late, or early, by so much."""
+def late_note(late_s: float, odometer: Trajectory) -> str:
+    """What is said of stamps that are late, or early, by so much, or by a period of our turns."""
     way, sign = ("late", "-") if late_s > 0 else ("early", "+")
+    period_s = repeated_after_s(odometer)
+    other = (
+        f" Our turns repeat about every {period_s:.0f} s: it may be off by so much more, or less."
+        if period_s
+        else ""
+    )
     return (
         f"its stamps seem {way} by {abs(late_s):.2f} s: shifted by {sign}{abs(late_s):.2f} s its "
-        "turns follow the odometer's best, in all parts of the run. Nothing is shifted: the errors "
-        "hold the shift as well"
+        f"turns follow the odometer's best, in all parts of the run.{other} Nothing is shifted: "
+        "the errors hold the shift as well"
     )
+
+
+def repeated_after_s(odometer: Trajectory) -> float | None:
+    """After how long [s] the turns of a drive repeat, of at most half of it; None if never.
+
+    A shift of stamps by that is none that turns could show.
+    """
+    at_s = np.arange(odometer.stamps_s[0], odometer.stamps_s[-1], LEAST_WIDTH_S)
+    turns = np.diff(np.interp(at_s, odometer.stamps_s, np.unwrap(odometer.poses[:, 2])))
+    alike = np.array([_correlation(turns[k:], turns[:-k]) for k in range(1, len(turns) // 2)])
+    unlike = np.flatnonzero(alike < UNLIKE)
+    if not len(unlike):
+        return None
+    best = unlike[0] + int(np.argmax(alike[unlike[0] :]))
+    return (best + 1) * LEAST_WIDTH_S if alike[best] > REPEATED else None
+
+
+def _correlation(one: FloatArray, other: FloatArray) -> float:
+    spread = float(one.std() * other.std())
+    return float(np.mean((one - one.mean()) * (other - other.mean()))) / spread if spread else 1.0

@@ -9,6 +9,7 @@ from odometry.io.csv_table import read_csv_table
 from odometry.io.trajectory_files import read_trajectory
 from odometry.io.tum import write_spatial_tum
 from odometry.trajectory import SpatialTrajectory, Trajectory
+from terrain.other_odometry.other_stamps import late_note, repeated_after_s
 from tests.terrain.cli.test_evaluate_others import answer, others, winding
 
 __all__ = ["winding"]
@@ -89,6 +90,17 @@ def test_the_reference_itself_measures_nothing(winding, tmp_path, off_m, named):
     result = found(winding, file)
     assert result["windows"] > 0
     assert any("it is the reference" in note for note in result["notes"]) is named
+
+
+@pytest.mark.parametrize(("period_s", "found_s"), [(10.0, 10.0), (1e9, None)])
+def test_a_shift_may_be_another_by_a_period_of_the_turns(period_s, found_s):
+    """A drive in a slalom; and one whose turns never repeat."""
+    at_s = np.arange(0.0, 60.0, 0.1)
+    never = np.interp(at_s, np.arange(0.0, 63.0, 3.0), np.random.default_rng(4).normal(size=21))
+    rate = np.sin(2 * np.pi * at_s / period_s) + (never if found_s is None else 0)
+    ours = Trajectory(at_s, np.column_stack([at_s, 0 * at_s, np.cumsum(0.1 * rate)]))
+    assert repeated_after_s(ours) == found_s
+    assert ("repeat about every 10 s" in late_note(0.4, ours)) is (found_s is not None)
 
 
 def test_degrees_and_opposite_turns_are_named(winding, tmp_path):
