@@ -6,24 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.evaluation.other_odometry import Judge, held_stamps
+from odometry.evaluation.other_odometry import Judge
 from odometry.geometry import se3
 from odometry.io.trajectory_files import from_optical
 from odometry.trajectory import SpatialTrajectory, Trajectory
+from terrain.other_odometry.other_drive import MOVED_M, of_another_drive, of_the_reference
+from terrain.other_odometry.shared_turns import (
+    CONSTANT_RAD,
+    TURNED_RAD,
+    shared_pieces,
+    turns_of,
+)
 
-STILL_M, MOVED_M = 1e-6, 1.0  # the other moves by less, the reference by more
-CONSTANT_RAD = 1e-3  # the limit of `yaw_constant` in the check of pose.csv
-TURNED_RAD = 0.5  # a drive that turns by less says nothing about headings
-WIDTH_S = 1.0  # over which turns are taken: above the noise of a gyroscope and of poses
+STILL_M = 1e-6  # the other moves by less, the reference by more than MOVED_M
 FEWEST_TURNS = 10
 FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
-MOST_SHIFT_S, STEP_S = 3.5, 0.1  # by which its stamps may be off and its turns still follow
-FEWEST_COMPARED = 30  # turns; fewer do not show another drive
-UNLIKE = 0.5  # correlation at the best shift: of 182 pairs of real drives 170 stay below
 MOST_RATIO = 10.0  # of both turns, either way: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
-SAME_M = 1e-3  # no odometry follows a reference so closely over a metre and more
-STAMP_DIGITS = 4  # after the point, of seconds: files round them
 TILTED_DEG = 50.0  # no skid-steer robot drives there
 # by format: shift that takes w, x, y, z as read to the other order, and both orders in words
 OTHER_ORDERS = {
@@ -135,23 +134,27 @@ def pose_fault(
             "as of a topic that measures speeds alone and leaves the pose empty. Its errors are "
             "not counted"
         )
-    fault = _heading_fault(trajectory, judge.odometer, readings)
-    return fault or _unrelated(trajectory, judge) or _is_the_reference(trajectory, judge)
+    if fault := _heading_fault(trajectory, judge.odometer, readings):
+        return fault
+    if note := of_another_drive(trajectory, judge):
+        return PoseFault(note, counts=True, fits=False)
+    note = of_the_reference(trajectory, judge)
+    return PoseFault(note, counts=True) if note else None
 
 
 def _heading_fault(
     trajectory: Trajectory, odometer: Trajectory, readings: Mapping[str, FloatArray]
 ) -> PoseFault | None:
-    rows = _ends(trajectory, odometer)
-    ours = _turns(odometer, odometer.poses[:, 2], rows)
+    rows = shared_pieces(trajectory, odometer)
+    ours = turns_of(odometer, odometer.poses[:, 2], rows)
     if len(ours) < FEWEST_TURNS or np.ptp(np.cumsum(ours)) < TURNED_RAD:
         return None
     yaw = trajectory.poses[:, 2]
-    if _fits(as_read := _turns(trajectory, yaw, rows), ours, FOLLOWS_NOT):
+    if _fits(as_read := turns_of(trajectory, yaw, rows), ours, FOLLOWS_NOT):
         return None
     degrees = {"its yaw is in degrees, not in radians": np.radians(yaw)}
     for cause, other in {**readings, **degrees}.items():
-        if _fits(_turns(trajectory, other, rows), ours, FOLLOWS):
+        if _fits(turns_of(trajectory, other, rows), ours, FOLLOWS):
             return PoseFault(f"{cause}; so read, its turns follow those of ours. {NOT_COUNTED}")
     if np.ptp(np.unwrap(yaw)) < CONSTANT_RAD:
         return PoseFault(
@@ -164,74 +167,6 @@ def _heading_fault(
         said = f"{note}. Nothing is turned: the errors are of the path as given"
         return PoseFault(said, counts=True, fits=False)
     return None
-
-
-def _unrelated(trajectory: Trajectory, judge: Judge) -> PoseFault | None:
-    """Said of turns that follow those of odometer and reference at no shift of the stamps."""
-    reference = judge.reference
-    others = [judge.odometer]
-    if np.isfinite(reference.poses[:, 2]).all():
-        others.append(reference)
-    best = -1.0
-    for shift_s in np.arange(-MOST_SHIFT_S, MOST_SHIFT_S + STEP_S / 2, STEP_S):
-        moved = Trajectory(trajectory.stamps_s + shift_s, trajectory.poses)
-        best = max(best, *(_likeness(moved, other) for other in others))
-        if best > UNLIKE:
-            return None
-    return PoseFault(
-        f"its turns do not follow those of ours, whichever way its stamps are shifted by up to "
-        f"{MOST_SHIFT_S:g} s (correlation {best:.2f} at best): poses of another drive, by another "
-        "clock, or of a program that was lost. Unless it was lost, its errors mean nothing",
-        counts=True,
-        fits=False,
-    )
-
-
-def _is_the_reference(trajectory: Trajectory, judge: Judge) -> PoseFault | None:
-    """Said of poses that are those by which all are judged, perhaps of another origin."""
-    stamps, of_reference_s = (
-        np.round(each.stamps_s, STAMP_DIGITS) for each in (trajectory, judge.reference)
-    )
-    _, rows, of_reference = np.intersect1d(stamps, of_reference_s, return_indices=True)
-    own, known = trajectory.poses[rows, :2], judge.reference.poses[of_reference, :2]
-    if len(rows) < FEWEST_COMPARED or np.ptp(known, axis=0).max() < MOVED_M:
-        return None
-    if np.ptp(own - known, axis=0).max() > SAME_M:
-        return None
-    return PoseFault(
-        f"its positions are those of the reference within {1000 * SAME_M:g} mm: it is the "
-        "reference, or was made of it, and its errors measure nothing",
-        counts=True,
-    )
-
-
-def _likeness(trajectory: Trajectory, other: Trajectory) -> float:
-    """Correlation of the turns of two trajectories; 1 where these are too few or small to say."""
-    rows = _ends(trajectory, other)
-    turns, ours = (_turns(each, each.poses[:, 2], rows) for each in (trajectory, other))
-    if len(ours) < FEWEST_COMPARED or np.ptp(np.cumsum(ours)) < TURNED_RAD:
-        return 1.0
-    turns = np.clip(turns, -np.abs(ours).max(), np.abs(ours).max())  # one jump is not a drive
-    if min(np.ptp(turns), np.ptp(ours)) < CONSTANT_RAD:
-        return 1.0
-    return float(np.corrcoef(turns, ours)[0, 1])
-
-
-def _ends(trajectory: Trajectory, odometer: Trajectory) -> FloatArray:
-    """First and last stamps (2, K) of pieces of WIDTH_S or two poses, in no gap of either."""
-    begin_s = max(each.stamps_s[0] for each in (trajectory, odometer))
-    end_s = min(each.stamps_s[-1] for each in (trajectory, odometer))
-    width_s = max(WIDTH_S, 2 * float(np.median(np.diff(trajectory.stamps_s))))
-    edges = np.arange(begin_s, end_s, width_s)
-    held = held_stamps(trajectory, edges) & held_stamps(odometer, edges)
-    both = held[:-1] & held[1:]
-    return np.stack([edges[:-1][both], edges[1:][both]])
-
-
-def _turns(trajectory: Trajectory, yaw: FloatArray, ends_s: FloatArray) -> FloatArray:
-    """Turn (K,) of each piece by a yaw (N,) at the stamps of a trajectory."""
-    first, last = np.interp(ends_s, trajectory.stamps_s, np.unwrap(yaw))
-    return np.asarray(last - first)
 
 
 def _fits(turns: FloatArray, ours: FloatArray, least: float) -> bool:
