@@ -96,15 +96,16 @@ class ModeFilters(NamedTuple):
         self, beliefs: ModeBeliefs, u: FloatArray, z: FloatArray, step_s: float
     ) -> tuple[ModeBelief, ModeBelief, FloatArray]:
         """Both estimates a step later, moved at once, and innovations of the filters alone."""
-        mixed, alone = self.imm.mixed(beliefs.together, step_s), beliefs.alone
+        alone = beliefs.alone
+        mixed, mixed_covariances, log_predicted = self.imm.mixed(beliefs.together, step_s)
         means, covariances = self.imm.bank.predicted(
-            np.stack([mixed.means, alone.means]),
-            np.stack([mixed.covariances, alone.covariances]),
+            np.stack([mixed, alone.means]),
+            np.stack([mixed_covariances, alone.covariances]),
             u,
             step_s,
         )
         innovations = self.bank.innovations(means[1], covariances[1], z)
-        predicted = ModeBelief(means[0], covariances[0], mixed.log_probabilities)
+        predicted = ModeBelief(means[0], covariances[0], log_predicted)
         if is_measured(z):
             updated = self.imm.bank.updated(means, covariances, z)
             together = self.imm.weighed(predicted, *(both[0] for both in updated))

@@ -87,7 +87,7 @@ class EkfModel:
         size = np.shape(self.measurement_covariance)[-1]
         if np.shape(z) != (size,):
             raise EstimationError(f"a measurement of shape {np.shape(z)}, expected ({size},)")
-        return np.flatnonzero(~np.isnan(z))
+        return np.array([i for i, number in enumerate(z.tolist()) if not math.isnan(number)], int)
 
 
 def log_density(normalised_squared: FloatArray | float, covariance: FloatArray) -> FloatArray:

@@ -169,18 +169,20 @@ class Imm:
 
     def predicted(self, belief: ModeBelief, u: FloatArray, step_s: float) -> ModeBelief:
         """Estimate a step later, before a measurement: `mixed`, then the models."""
-        mixed = self.mixed(belief, step_s)
-        moved = self.bank.predicted(mixed.means, mixed.covariances, u, step_s)
-        return ModeBelief(*moved, mixed.log_probabilities)
+        means, covariances, log_predicted = self.mixed(belief, step_s)
+        moved = self.bank.predicted(means, covariances, u, step_s)
+        return ModeBelief(*moved, log_predicted)
 
-    def mixed(self, belief: ModeBelief, step_s: float) -> ModeBelief:
-        """Where the filters start, and the probabilities after a step: Salvi 2024 eq. 4-7."""
+    def mixed(self, belief: ModeBelief, step_s: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Where the filters start, and the probabilities after a step: Salvi 2024 eq. 4-7.
+
+        Means (M, n), covariances (M, n, n) and log-probabilities (M,), as of a `ModeBelief`.
+        """
         log_joint = self._log_transition(belief, step_s) + belief.log_probabilities[:, None]
         log_predicted = log_sum(log_joint)  # eq. 5
         weights = _mixing_weights(log_joint, log_predicted)
         of_filters = belief.means, belief.covariances
-        mixed = moments(weights, *of_filters, self.state_angles)  # eq. 6-7
-        return ModeBelief(*mixed, log_predicted)
+        return *moments(weights, *of_filters, self.state_angles), log_predicted  # eq. 6-7
 
     def updated(self, predicted: ModeBelief, z: FloatArray | None) -> ModeBelief:
         """Estimate after a measurement: eq. 8-9; without one, probabilities stay; see `step`."""

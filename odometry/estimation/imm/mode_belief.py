@@ -54,7 +54,9 @@ def _mean_angles(weights: FloatArray, angles: FloatArray) -> FloatArray:
     heaviest = angles[weights.argmax(axis=1)]
     turned = angles - heaviest[:, None, :]  # (K, M, a)
     sine, cosine = ((weights[:, None, :] @ part)[:, 0] for part in (np.sin(turned), np.cos(turned)))
-    turn = np.where(np.hypot(sine, cosine) > NO_DIRECTION, np.arctan2(sine, cosine), 0.0)
+    turn = np.arctan2(sine, cosine)
+    if cosine.min() <= NO_DIRECTION:
+        turn = np.where(np.hypot(sine, cosine) > NO_DIRECTION, turn, 0.0)
     return np.asarray(heaviest + turn)
 
 
