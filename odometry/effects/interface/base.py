@@ -63,6 +63,8 @@ class Effect(ABC):
         Effects that are this one at some values, and what distinguishes them.
     of_reference : bool
         Whether it is a fault of the reference sensor.
+    moves_poses : bool
+        Whether it changes where the robot is seen; a fault of the gyroscope does not.
     mimicked_by : str
         What a robot may do that looks the same in any run. Such an effect is never named; where
         it explains most, no other effect is named either.
@@ -94,6 +96,7 @@ class Effect(ABC):
     includes: ClassVar[Mapping[str, str]] = {}
     of_reference: ClassVar[bool] = False
     mimicked_by: ClassVar[str] = ""
+    moves_poses: ClassVar[bool] = True
     robot_alike: ClassVar[str] = ""
     essential: ClassVar[tuple[str, ...]] = ()
     constant_names: ClassVar[tuple[str, ...]] = ()

@@ -19,6 +19,7 @@ class GyroscopeError(MeasurementEffect):
     remedy = "calibrate the gyroscope, or leave it out (the poses and the treads agree)"
     needs = "a gyroscope and a measured pose"
     of_reference = True
+    moves_poses = False
 
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:

@@ -1,7 +1,5 @@
 """What a name must pass: it is what it says, within its bounds, and closes what was held out."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -30,7 +28,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.pieces import numbered_pieces
-from odometry.gap.prepare.statistic import Gap, Measure, Shown, sure_sum
+from odometry.gap.prepare.statistic import Gap, Shown, sure_sum
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot
 
@@ -248,28 +246,3 @@ def test_a_name_that_leaves_more_than_noise_closes_the_most(share, spread, least
     """Of chi-squared on the measured runs, or of the gap on held-out data."""
     left = Gap(0.2, least_m, 0.3), Gap(0.1, 0.08, 0.12)
     assert (closes_the_most(share, spread, left, least, CONFIG) == "") == stands
-
-
-@pytest.mark.parametrize(
-    ("rise", "scatter", "stands"),
-    [(0.005, 0.0, True), (0.03, 0.0, False), (0.03, 0.2, True), (0.12, 0.2, False)],
-)
-def test_positions_may_not_rise_surely_where_headings_are_judged(
-    make_scene, monkeypatch, rise, scatter, stands
-):
-    """Headings that fall by half, beside positions that rise, alike or here more and there less."""
-    scene = make_scene(4)
-    to_and_fro = scatter * (-1.0) ** numbered_pieces([scene], CONFIG.part_s)
-    errors = {
-        Measure.HEADING: {"before": 0.1, "after": 0.05},
-        Measure.POSITION: {"before": 0.1, "after": 0.1 * (1 + rise + to_and_fro)},
-    }
-
-    def errors_of(stage, _, scene, measure):
-        return np.zeros(len(scene)) + errors[measure][stage] ** 2
-
-    monkeypatch.setattr("odometry.gap.name.verdict.squared_errors", errors_of)
-    of_headings = replace(FLOOR, measure=Measure.HEADING)
-    reason = closes_held_out(("before", ()), ("after", ()), [scene], of_headings, CONFIG)
-    assert (reason == "") == stands
-    assert stands or reason.startswith("the gap on held-out data gets worse")
