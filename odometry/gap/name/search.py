@@ -137,8 +137,12 @@ class Search:
         return max(1.0, self.fitter.spread(found.fitted))
 
     def has_excess(self, before: Fitted) -> bool:
-        """Whether the gap is above the interval of the noise floor, or hidden in a moved base."""
-        return self._gap(before) > self.floor.high or self._left(before)
+        """Whether the gap is above the interval of the noise floor, or hidden in a moved base.
+
+        Or, where what acts now and then shows on held-out data, chi-squared is beyond noise.
+        """
+        rarely = self.is_above and self.fitter.spread(before) > self.config.unexplained
+        return rarely or self._gap(before) > self.floor.high or self._left(before)
 
     def _left(self, fit: Fitted) -> bool:
         """Whether the base left its calibration."""
