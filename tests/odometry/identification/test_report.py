@@ -37,6 +37,15 @@ def test_each_variable_stands_with_its_interval_and_where_it_started(found):
     assert cells(lines, "x_icr") == ["x_icr", "0.06", "given", "m"]
 
 
+def test_a_wide_deviation_is_stated_as_a_share_of_the_value(found):
+    fit = replace(found.fit, covariance=1000 * found.fit.covariance)
+    lines = report("gravel", replace(found, fit=fit))
+    shares = {n: 100 * s / abs(fit.values[n]) for n, s in fit.sigmas.items()}
+    name = max(shares, key=lambda one: shares[one])
+    assert shares[name] > 20  # so that one in a hundred of it shows in its first decimal
+    assert cells(lines, name)[3:5] == [f"{shares[name]:.1f}", "%"]
+
+
 def test_statistics_are_those_of_the_fit(found):
     lines = report("gravel", found)
     assert cells(lines, "data  ")[1] == str(len(found.fit.windows))
