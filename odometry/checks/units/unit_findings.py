@@ -100,14 +100,16 @@ def too_fast(evidence: Evidence) -> Finding:
         for unit in tread_units(radius)
         if 0.2 <= evidence.fastest_m_s / unit.factor <= 5.0 and unit.factor > 1
     ]
-    words = " or ".join(unit.words for unit in fitting) or "another unit than m/s"
+    words = " or ".join(unit.words for unit in fitting)
+    counters = "another unit than m/s, or the columns hold counters (encoder ticks), not speeds"
     return Finding(
         "tread_unit",
         Level.WARNING,
         f"treads run at up to {evidence.fastest_m_s:.4g} m/s, and no positions say how far the "
         "robot moved",
-        f"Tread speeds are in {words}",
-        "Convert v_left and v_right to m/s: wheel rate times radius",
+        f"Tread speeds are in {words or counters}",
+        "Convert v_left and v_right to m/s: wheel rate times radius"
+        + ("" if words else "; differentiate counters by t first"),
     )
 
 
