@@ -29,7 +29,7 @@ class Place:
         return f"{self.robot} on {self.terrain}, over {self.horizon_m:g} m"
 
     def holds(self, evaluation: Evaluation) -> bool:
-        """Whether a evaluation belongs here."""
+        """Whether an evaluation belongs here."""
         return (evaluation.robot, evaluation.terrain, evaluation.horizon_m) == (
             self.robot,
             self.terrain,

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.comparison.statistics import Interval, mean_interval
+from odometry.comparison.config import ComparisonConfig
+from odometry.comparison.statistics import Interval, differences, mean_interval
+from tests.odometry.comparison.written_errors import PLACE, evaluation
 
 
 def interval(values, runs, block, draws=4000, seed=0):
@@ -101,6 +103,13 @@ def test_differences_of_arithmetic_alone_are_none():
     assert (found.mean, found.low, found.high) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_two_windows_have_a_difference_and_one_has_none(count):
+    pair = evaluation("east", icr=[0.1] * count, differential_drive=[0.3] * count)
+    found = differences(PLACE, [pair], ["icr", "differential_drive"], ComparisonConfig())
+    assert [each.windows for each in found] == [2, 2] * (count - 1)
+
+
 def test_the_seed_decides():
     values = np.random.default_rng(1).normal(0, 1, 50)
     runs = np.repeat([0, 1], 25)
@@ -123,6 +132,18 @@ def test_runs_that_differ_for_certain_have_the_interval_of_student(count, deviat
     half = deviations * of_runs.std(ddof=1) / np.sqrt(count)
     assert found.high - found.mean == pytest.approx(half, rel=1e-3)
     assert found.mean - found.low == pytest.approx(half, rel=1e-3)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 57.3])
+def test_another_unit_gives_the_same_interval(unit):
+    """Also where runs differ about as much as their windows explain."""
+    rng = np.random.default_rng(4)
+    runs = np.repeat(np.arange(3), 30)
+    values = rng.normal(0, 1, 90) + rng.normal(0, 0.4, 3)[runs]
+    in_one, in_other = interval(values, runs, 5), interval(unit * values, runs, 5)
+    assert [in_other.mean, in_other.low, in_other.high] == pytest.approx(
+        [unit * in_one.mean, unit * in_one.low, unit * in_one.high]
+    )
 
 
 @pytest.mark.parametrize("count", [2, 3])
