@@ -94,6 +94,14 @@ def test_smoothed_is_the_posterior(seed, shape):
     )
 
 
+def test_a_belief_that_is_carried_goes_to_its_mean():
+    """Rows of several beliefs each: those of four terrains, on which the next place stays."""
+    beliefs = np.array([[0.7, 0.2, 0.1, 0.0], [0.1, 0.1, 0.1, 0.7], [1.0, 0.0, 0.0, 0.0]])
+    stay = np.array([[1.0], [0.6], [0.0]])
+    expected = [[0.7, 0.2, 0.1, 0.0], [0.16, 0.16, 0.16, 0.52], [0.25] * 4]
+    assert carried(beliefs, stay) == pytest.approx(np.array(expected))
+
+
 def test_a_thousand_places_stay_finite():
     given_ = np.tile([0.0, 1.0], (1000, 1))
     beliefs = smoothed(given_, np.full(1000, 0.1), np.ones(3) / 3, **SETTINGS)

@@ -53,3 +53,17 @@ def test_terrain_that_labels_contradict_is_no_longer_known():
         switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
         known.append(switch.footing.terrain != "unknown")
     assert np.mean(known) < 0.3
+
+
+def test_the_place_under_the_middle_decides_whether_a_label_supports_the_terrain():
+    """One image at 4 m has no name: the robot is without support on the places nearest to it."""
+    switch = start()
+    for x in np.arange(0.0, 6.0, 0.25):
+        switch = switch.add_label(seen_at(x, "unknown" if x == 3.0 else "grass"))
+    without = []
+    for x in np.arange(1.02, 6.0, 0.05):
+        switch = switch.at(2 * x, np.array([x, 0.0, 0.0]), x)
+        if switch.unsupported_m > 0:
+            without.append(x)
+    assert (min(without), max(without)) == pytest.approx((4.0, 4.0), abs=0.15)
+    assert len(without) == 5
