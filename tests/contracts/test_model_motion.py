@@ -72,7 +72,7 @@ def test_mirror_symmetry(model, drawn, inputs):
 
 
 def test_every_model_is_ideal_somewhere():
-    assert set(MODELS) - set(IDEAL) == NEVER_IDEAL
+    assert set(MODELS) - set(IDEAL) == NEVER_IDEAL, "IDEAL of tests/contracts/test_model_motion.py"
 
 
 @pytest.mark.parametrize("name", IDEAL)

@@ -86,6 +86,10 @@ each_model = pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 
 
 def ordinary(model):
+    assert model.name in CONVENTIONS, (
+        f"no row of CONVENTIONS in tests/contracts/test_models.py has {model.name!r}: unit, "
+        "ordinary value and spread of each parameter"
+    )
     return {name: value for name, (_, value, _) in CONVENTIONS[model.name].items()}
 
 
