@@ -58,8 +58,13 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(
             ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__", "version_*")
         )
-    for name in ("data", "notebooks", "README.md", "pyproject.toml"):
+    for name in ("notebooks", "README.md", "pyproject.toml"):
         (root / name).symlink_to(ROOT / name)
+    (root / "data").mkdir()
+    for file in (ROOT / "data").iterdir():
+        (root / "data" / file.name).symlink_to(file)
+    (root / "data/README.md").unlink()
+    shutil.copy(ROOT / "data/README.md", root / "data/README.md")
     for _, section in SECTIONS:
         for block in blocks(section):
             apply(root, *block)
@@ -67,7 +72,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_each_example_is_short() -> None:
-    assert len(SECTIONS) == 6
+    assert len(SECTIONS) == 7
     for name, section in SECTIONS:
         assert all(lines.count("\n") <= MOST_LINES for *_, lines in blocks(section)), name
 
