@@ -199,7 +199,8 @@ def test_the_making_of_the_shipped_data(tmp_path: Path, monkeypatch: pytest.Monk
         for file in (tmp_path / "demo.toml", ROOT / "data/modes/demo.toml")
     )
     assert made.names == shipped.names
-    np.testing.assert_allclose(made.modes.A, shipped.modes.A, rtol=1e-6)
+    # a search: BLAS of other processors ends 3e-6 off it, a change of the maker moved it by 3e-4
+    np.testing.assert_allclose(made.modes.A, shipped.modes.A, rtol=3e-5)
     felt, kept = (
         odometry.read_feel_model(file)
         for file in (tmp_path / "demo.feel", ROOT / "data/feel/demo.feel")

@@ -75,14 +75,23 @@ def write_run_folder(
 ) -> None:
     """Write `run.toml` and one CSV file a table.
 
+    Columns and units are those of data/README.md (Run folder): seconds, metres, radians. A tread
+    speed holds until the next stamp. Columns are not judged here: `check_recording` does that.
+
     Parameters
     ----------
     folder : Path
         Made if it is missing. Image files are the caller's to write.
     settings : Mapping
-        The content of `run.toml`; `[robot]` with `track_width` is required.
+        The content of `run.toml`; `[robot]` with `track_width` [m] is required.
     tables : Mapping of name to columns
-        Names of `FILES`; columns are arrays of one length, the first is `t`.
+        "odometry" (required to read the folder), "pose", "velocity", "images", "truth", "imu";
+        columns by name are arrays (N,).
+
+    Raises
+    ------
+    RunFolderError
+        If a table has another name, or columns that differ in length.
 
     Examples
     --------
