@@ -1,4 +1,4 @@
-"""Whether the runs of a place fit one model; errors held out are else those of a mixture."""
+"""Whether the runs of one terrain fit one model: if not, held-out errors are mostly of that."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from odometry.identification.fitters import fitter
 from odometry.identification.halves import halves_of
 from odometry.identification.runs_apart import runs_apart
 
-MIXTURE = "Errors here are most of all of that, and say little of which model suits either"
+MIXTURE = "The errors below come mostly from that, and say little about which model suits them"
 
 
 def parts_apart(
@@ -22,7 +22,7 @@ def parts_apart(
     evaluations: Sequence[Evaluation],
     config: ComparisonConfig,
 ) -> dict[tuple[str, str], str]:
-    """By robot and terrain, which runs, or halves of the only run, differ from the others.
+    """A sentence for each robot and terrain whose runs, or halves of one run, do not fit one model.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def parts_apart(
     Returns
     -------
     dict of (robot, terrain) to str
-        A sentence, where `identify` would say so of these runs.
+        By the tests of `identify` (`runs_apart`, `halves_of`); without those that fit one model.
     """
     found = {}
     for robot, terrain in dict.fromkeys((s.split.robot, s.split.terrain) for s in split_models):
@@ -70,6 +70,7 @@ def _best(
 def _apart(
     candidate: IdentifiedModel, here: Sequence[SplitModels], config: ComparisonConfig
 ) -> str | None:
+    """The note of `identify` on all parts of a place under one model; None where they agree."""
     every = (part for each in here for part in (*each.split.held_out, *each.split.training))
     parts = _whole(list(dict.fromkeys(every)))
     near = here[0].predictors[candidate.label].values

@@ -87,9 +87,11 @@ def mean_interval(
 
 
 def _half_of_runs(of_runs: Sequence[FloatArray], variances: FloatArray, blocks: float) -> float:
-    """Half of the interval of a mean over runs (R,), each with the variance of its own mean.
+    """Half of the interval of a mean over few runs (R,); 0 where runs differ by chance alone.
 
-    What runs differ by beyond that variance is known from R - 1 differences alone.
+    `variances` (R,) are of the mean of each run by its own windows. What runs differ by beyond
+    them is known from R - 1 differences alone: Student's t, with the degrees of freedom of Welch
+    and Satterthwaite for the sum of both.
     """
     if not 2 <= len(of_runs) < FEW_RUNS:
         return 0.0

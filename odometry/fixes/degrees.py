@@ -9,7 +9,8 @@ from odometry.errors import TrajectoryError
 from odometry.fixes.local_metres import on_earth
 
 WHOLE_FROM = 1e5  # whole numbers above are of 1e-7 degrees: 0.01 degrees
-# No land lies within a radian's largest numbers of 0 N, 0 E; simulations lie nearer than this
+# Angles in radians are below pi / 2 and pi. As degrees these would be on the sea at 0 N, 0 E, where
+# no robot drives; simulations may lie there, but nearer to it than NEAR_ZERO_DEG
 SEA_DEG = np.array([np.pi / 2, np.pi])
 NEAR_ZERO_DEG = 0.1
 ENOUGH = 7  # decimals of a degree: 0.01 m

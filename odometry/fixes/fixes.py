@@ -157,7 +157,7 @@ def _no_stamps(
 def _held(degrees: FloatArray, kept: BoolArray) -> BoolArray:
     """Rows (N,) that only repeat the place before, where a log does so evenly; else none.
 
-    None either of places with few digits: a moving robot leaves small cells evenly, too.
+    Nor where places have few digits: a moving robot leaves such small cells evenly as well.
     """
     rows = np.flatnonzero(kept)
     repeats = np.append(False, (np.diff(degrees[rows], axis=0) == 0).all(axis=1))

@@ -10,21 +10,24 @@ from odometry.evaluation.other_odometry import Judge
 from odometry.geometry import se3
 from odometry.io.trajectory_files import from_optical
 from odometry.trajectory import SpatialTrajectory, Trajectory
-from terrain.other_odometry.other_drive import MOVED_M, of_another_drive, of_the_reference
 from terrain.other_odometry.shared_turns import (
     CONSTANT_RAD,
     TURNED_RAD,
     shared_pieces,
     turns_of,
 )
+from terrain.other_odometry.whose_poses import MOVED_M, of_another_drive, of_the_reference
 
 STILL_M = 1e-6  # the other moves by less, the reference by more than MOVED_M
 FEWEST_TURNS = 10
-FOLLOWS, FOLLOWS_NOT = 0.9, 0.5  # correlation of its turns with the odometer's
+# Correlation of turns with the odometer's, above which another reading of yaw is named; above the
+# lower one none is looked for, as the file is right as read
+NAMED, AS_READ = 0.9, 0.5
 MOST_RATIO = 10.0  # of both turns, either way: beyond is another unit (57.3 in degrees)
 NOT_COUNTED = "Its errors are not counted: they would be those of the heading"
 TILTED_DEG = 50.0  # no skid-steer robot drives there
-# by format: shift that takes w, x, y, z as read to the other order, and both orders in words
+# By format: by how many places w, x, y, z as read are rotated to get the other order, then the
+# order that the file seems to have, and the one that the format wants
 OTHER_ORDERS = {
     "tum": (-1, "in the order qw qx qy qz", "qx qy qz qw"),
     "euroc": (1, "in the order qx qy qz qw", "qw qx qy qz"),
@@ -131,8 +134,8 @@ def pose_fault(
     if np.ptp(xy, axis=0).max() < STILL_M and moved_m > MOVED_M:
         return PoseFault(
             f"it never moves: all of its {len(xy)} positions are ({xy[0, 0]:.4g}, {xy[0, 1]:.4g}), "
-            "as of a topic that measures speeds alone and leaves the pose empty. Its errors are "
-            "not counted"
+            "as of a topic that measures speeds alone and leaves the pose empty. Give a file or "
+            "topic with poses; its errors are not counted"
         )
     if fault := _heading_fault(trajectory, judge.odometer, readings):
         return fault
@@ -150,11 +153,11 @@ def _heading_fault(
     if len(ours) < FEWEST_TURNS or np.ptp(np.cumsum(ours)) < TURNED_RAD:
         return None
     yaw = trajectory.poses[:, 2]
-    if _fits(as_read := turns_of(trajectory, yaw, rows), ours, FOLLOWS_NOT):
+    if _fits(as_read := turns_of(trajectory, yaw, rows), ours, AS_READ):
         return None
     degrees = {"its yaw is in degrees, not in radians": np.radians(yaw)}
     for cause, other in {**readings, **degrees}.items():
-        if _fits(turns_of(trajectory, other, rows), ours, FOLLOWS):
+        if _fits(turns_of(trajectory, other, rows), ours, NAMED):
             return PoseFault(f"{cause}; so read, its turns follow those of ours. {NOT_COUNTED}")
     if np.ptp(np.unwrap(yaw)) < CONSTANT_RAD:
         return PoseFault(
@@ -162,9 +165,12 @@ def _heading_fault(
             f"{np.abs(ours).sum():.1f} rad in all: a placeholder, or the numbers of a quaternion "
             f"in another order. Write its heading. {NOT_COUNTED}"
         )
-    if _fits(-as_read, ours, FOLLOWS):
+    if _fits(-as_read, ours, NAMED):
         note = "its turns are opposite to those of ours: z points down, or its sides are exchanged"
-        said = f"{note}. Nothing is turned: the errors are of the path as given"
+        said = (
+            f"{note}. If so, change the sign of y and yaw. Nothing is changed here: the errors are "
+            "of the path as given"
+        )
         return PoseFault(said, counts=True, fits=False)
     return None
 

@@ -11,8 +11,9 @@ LEAST_SHIFT_S = 0.15
 LEAST_WIDTH_S = 0.5  # over which turn rates are taken
 CERTAIN, TOGETHER, CORRELATED = 4.0, 0.7, 0.8
 UNLIKE, REPEATED = 0.3, 0.7  # correlation of turns with later ones: changed, and back again
-# Pieces of shorter runs are half as long, as if they took twice the time: of 272 stretches of 19
-# and 24 s of real recordings one is then called late or early that is not.
+# `lag_between` compares pieces of 8 s and more. Shorter runs are stretched to TIMES their time, so
+# that 4 s are enough: of 272 stretches of 19 and 24 s of real recordings one is then called late
+# or early that is not.
 SHORT_S, TIMES = 31.0, 2.0
 MOST_SHORT_S, LEAST_SHORT_S, CORRELATED_SHORT = 1.0, 0.2, 0.9
 

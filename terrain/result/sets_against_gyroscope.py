@@ -89,9 +89,9 @@ def _compared(
 
 
 def _ratio(predicted: Sequence[FloatArray], measured: FloatArray) -> tuple[float, float]:
-    """How often the first of `predicted` is in what was measured (K,), and its deviation.
+    """Factor of the first of `predicted` (each (K,)) in what was measured (K,), and its deviation.
 
-    By least squares; the deviation by leaving out each window once.
+    By least squares; the standard deviation by leaving out each window once (jackknife).
     """
     table = np.stack(predicted, axis=-1)
     squares = np.einsum("ki,kj->kij", table, table)

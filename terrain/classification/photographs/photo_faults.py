@@ -10,7 +10,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import counted
-from terrain.classification.photographs.cut_apart import cut_apart
+from terrain.classification.photographs.pieces import pieces
 from terrain.classification.photographs.shifted_frames import shifted_frames
 from terrain.classification.photographs.thumbnails import (
     ALIKE,
@@ -108,7 +108,7 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
     By the correlation of small blurred thumbnails: images of one scene, frames of a camera that
     hardly moves, copies that were compressed again, turned by quarters or mirrored. Those without
     any contrast are like none. And frames of a burst, by `shifted_frames`, and pieces of one
-    photograph, by `cut_apart`.
+    photograph, by `pieces`.
     """
     photos = list(group_of)
     thumbnails = np.stack([_thumbnail(photo) for photo in photos])
@@ -120,7 +120,7 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
     nearest = alike.argmax(axis=1)
     found = np.flatnonzero(alike[np.arange(len(photos)), nearest] > ALIKE)
     pairs = {photos[int(i)]: photos[int(nearest[i])] for i in found}
-    for one, other in chain(shifted_frames(group_of), cut_apart(group_of)):
+    for one, other in chain(shifted_frames(group_of), pieces(group_of)):
         pairs.setdefault(one, other)
         pairs.setdefault(other, one)
     return sorted(pairs.items())

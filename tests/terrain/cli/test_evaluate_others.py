@@ -216,7 +216,7 @@ def test_a_path_of_another_drive_has_no_shift_scale_or_turn(winding, tmp_path, o
     write_spatial_tum(tmp_path / "slam.tum", SpatialTrajectory.from_plane(poses))
     found = others(winding, "--with", f"slam={tmp_path / 'slam.tum'}")[1]["others"]
     (note,) = found["other/slam"]["notes"]
-    assert ("poses of another drive" if other == "drive" else "opposite") in note
+    assert ("the file is of another drive" if other == "drive" else "opposite") in note
     assert found["other/slam"]["translation_m_per_m"]["mean"] > 0.1
 
 

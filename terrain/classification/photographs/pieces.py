@@ -1,4 +1,4 @@
-"""Photographs that continue each other across a border: squares that one photograph was cut to."""
+"""Pieces of one photograph: images of one size that continue each other across a border."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -10,16 +10,17 @@ from scipy import ndimage
 
 from odometry.arrays import AnyArray, FloatArray
 
-SMOOTH_PX = 17  # what is wider says little: borders of two photographs may darken alike
-CONTINUES = 0.75  # correlation; of two million borders of other scenes in development 0.73
-NOISE_GREYS = 2.0  # standard deviation that says nothing
-LEAST = 0.3  # standard deviation of a border that shows anything, once edges are levelled
-BLACK, MOST_BLACK = 10, 0.1  # greys, and the share of a border: bars end at the same place
-SHORTEST_PX = 96  # side: shorter borders are alike by chance
+SMOOTH_PX = 17  # brightness that changes over more is left out: it is alike in many photographs
+CONTINUES = 0.75  # correlation above; the largest of two million borders of other scenes is 0.73
+NOISE_GREYS = 2.0  # standard deviation: texture that is much weaker is noise
+LEAST = 0.3  # standard deviation, in units of the local one, below which a border is even
+BLACK, MOST_BLACK = 10, 0.1  # grey level, and share of a border: black bars of two images are alike
+SHORTEST_PX = 96  # side of an image: shorter borders are alike by chance
+# Of one photograph and of the next one: last and first column, then last and first row
 SIDES = (((slice(None), -1), (slice(None), 0)), ((-1, slice(None)), (0, slice(None))))
 
 
-def cut_apart(group_of: Mapping[Path, str]) -> Iterator[tuple[Path, Path]]:
+def pieces(group_of: Mapping[Path, str]) -> Iterator[tuple[Path, Path]]:
     """Photographs whose right or lower border goes on in another of its size.
 
     Parameters
@@ -51,9 +52,10 @@ def cut_apart(group_of: Mapping[Path, str]) -> Iterator[tuple[Path, Path]]:
 
 
 def _line(border: AnyArray) -> FloatArray:
-    """A border (n,) of length one, without what is smooth; zero where it is even, or black.
+    """A border (n,) without what is smooth, of length one; zero where it is even, or black.
 
-    Edges count no more than fine texture: parts of the robot end at the same place in each image.
+    It is divided by its local standard deviation, so that one strong edge counts no more than fine
+    texture: parts of the robot end at the same place in all images.
     """
     values = border.astype(np.float64)
     values -= ndimage.uniform_filter1d(values, SMOOTH_PX)

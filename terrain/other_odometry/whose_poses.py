@@ -1,4 +1,4 @@
-"""Poses that are of another drive, or those of the reference itself: their errors say nothing."""
+"""Whose poses a file holds: of another drive, or of the reference itself, errors say nothing."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ STAMP_DIGITS = 4  # after the point, of seconds: files round them
 
 
 def of_another_drive(trajectory: Trajectory, judge: Judge) -> str:
-    """Said of turns that follow those of odometer and reference at no shift of the stamps."""
+    """A note where turns follow those of odometer and reference at no shift, else an empty text."""
     reference = judge.reference
     others = [judge.odometer]
     if np.isfinite(reference.poses[:, 2]).all():
@@ -33,13 +33,14 @@ def of_another_drive(trajectory: Trajectory, judge: Judge) -> str:
             return ""
     return (
         f"its turns do not follow those of ours, whichever way its stamps are shifted by up to "
-        f"{MOST_SHIFT_S:g} s (correlation {best:.2f} at best): poses of another drive, by another "
-        "clock, or of a program that was lost. Unless it was lost, its errors mean nothing"
+        f"{MOST_SHIFT_S:g} s (correlation {best:.2f} at best): the file is of another drive, its "
+        "stamps are of another clock, or the program lost its way. Only in the last case its "
+        "errors mean something; else give the file of this drive, with stamps of its clock"
     )
 
 
 def of_the_reference(trajectory: Trajectory, judge: Judge) -> str:
-    """Said of positions that are those by which all are judged, perhaps of another origin."""
+    """A note where positions are those of the reference, from any origin, else an empty text."""
     stamps, of_reference_s = (
         np.round(each.stamps_s, STAMP_DIGITS) for each in (trajectory, judge.reference)
     )
@@ -51,7 +52,8 @@ def of_the_reference(trajectory: Trajectory, judge: Judge) -> str:
         return ""
     return (
         f"its positions are those of the reference within {1000 * SAME_M:g} mm: it is the "
-        "reference, or was made of it, and its errors measure nothing"
+        "reference, or was made of it, and its errors measure nothing. Give poses that were made "
+        "without it"
     )
 
 

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.classification.photographs.cut_apart import cut_apart
+from terrain.classification.photographs.pieces import pieces
 
 
 def texture(rng, shape):
@@ -53,14 +53,14 @@ def test_the_piece_that_goes_on_is_found(write, rng, cut):
     images = [third, first, *others, second]
     groups = write(images if cut == "beside" else [image.T for image in images])
     files = list(groups)
-    assert set(cut_apart(groups)) == {(files[1], files[-1]), (files[-1], files[0])}
-    assert not list(cut_apart(dict.fromkeys(files, "one photograph")))
+    assert set(pieces(groups)) == {(files[1], files[-1]), (files[-1], files[0])}
+    assert not list(pieces(dict.fromkeys(files, "one photograph")))
 
 
 @pytest.mark.parametrize("alter", [np.copy, with_bars, with_robot, with_shade])
 def test_other_scenes_do_not_go_on(write, rng, alter):
     groups = write([alter(texture(rng, (160, 160))) for _ in range(40)])
-    assert not list(cut_apart(groups))
+    assert not list(pieces(groups))
 
 
 def test_flat_small_and_broken_files_go_on_in_none(write, rng, tmp_path):
@@ -69,4 +69,4 @@ def test_flat_small_and_broken_files_go_on_in_none(write, rng, tmp_path):
     groups = write([flat, flat, small[:, :60], small[:, 60:]])
     broken = tmp_path / "broken.jpg"
     broken.write_bytes(b"no image")
-    assert not list(cut_apart({**groups, broken: "broken"}))
+    assert not list(pieces({**groups, broken: "broken"}))
