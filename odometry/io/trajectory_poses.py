@@ -62,11 +62,15 @@ def _another_clock(stamps_s: FloatArray, of_odometry_s: FloatArray) -> str:
     share = "They share time where the poses are moved by"
     if 0 < abs(zone_s) <= MOST_ZONE_S and _share_time(stamps_s + zone_s, of_odometry_s):
         return (
-            f". {share} {zone_s / 3600:+g} hours: are they in another time zone than the odometry?"
+            f". {share} {zone_s / 3600:+g} hours: are they in another time zone than the odometry? "
+            f"Then add {zone_s:g} s to their stamps"
         )
     if gps_s >= GPS_S and _share_time(stamps_s + gps_s, of_odometry_s):
         since = "6 January 1980" if gps_s == GPS_S else "the start of a week"
-        return f". {share} {gps_s:+.0f} s: they are GPS time, which counts from {since}"
+        return (
+            f". {share} {gps_s:+.0f} s: they are GPS time, which counts from {since}. Add that to "
+            "their stamps"
+        )
     return ""
 
 

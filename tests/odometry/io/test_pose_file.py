@@ -100,3 +100,14 @@ def test_gps_time_is_named(begin_s, since):
         poses_within(begin_s + np.arange(100.0), odometry(1764510000.0, 1764510300.0))
     assert ("GPS time" in str(refused.value)) == bool(since)
     assert since in str(refused.value)
+    assert str(refused.value).endswith("Add that to their stamps") == bool(since)
+
+
+@pytest.mark.parametrize("hours", [-2.0, 5.5])
+def test_another_time_zone_is_named_with_what_to_add(hours):
+    begin_s = 1764510000.0
+    with pytest.raises(TrajectoryError) as refused:
+        poses_within(begin_s - 3600 * hours + np.arange(100.0), odometry(begin_s, begin_s + 99))
+    said = str(refused.value)
+    assert f"moved by {hours:+g} hours" in said
+    assert said.endswith(f"Then add {3600 * hours:g} s to their stamps")
