@@ -49,7 +49,8 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--group", nargs="*", choices=tuple(KINDS), default=list(KINDS))
-    parser.add_argument("--kinds", nargs="*", choices=NAMES, help="instead of groups")
+    kinds_help = "instead of groups; a name that does not exist lists them all"
+    parser.add_argument("--kinds", nargs="*", choices=NAMES, metavar="KIND", help=kinds_help)
     parser.add_argument("--out", type=Path, default=Path("gap_cases"))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument(
