@@ -10,6 +10,7 @@ from terrain.classification.photographs.photo_faults import (
     look_alikes,
     unread_note,
 )
+from terrain.classification.photographs.shifted_frames import shifted_frames
 from terrain.classification.training import train
 from terrain.errors import ImageError, PatchError
 
@@ -114,6 +115,17 @@ def test_shifted_frames_of_a_burst_look_alike(write, rng):
     alike = look_alikes({photo: str(photo) for photo in [*frames, *others]})
     assert [one for one, _ in alike] == frames
     assert look_alikes(dict.fromkeys(frames, "scene")) == []
+
+
+@pytest.mark.parametrize(("between", "alike"), [(4, True), (5, False)])
+def test_a_frame_is_compared_with_five_before_it(write, rng, between, alike):
+    """Of other scenes in between."""
+    _, scene = write("scene.png", np.kron(rng.integers(60, 190, (120, 160)), np.ones((2, 2), int)))
+    first, _ = write("sand/0.png", scene[:200, :260])
+    others = [write(f"sand/{n + 1}.png")[0] for n in range(between)]
+    last, _ = write("sand/9.png", scene[9:209, 7:267])
+    found = list(shifted_frames({photo: str(photo) for photo in [first, *others, last]}))
+    assert found == ([(first, last)] if alike else [])
 
 
 @pytest.mark.parametrize(
