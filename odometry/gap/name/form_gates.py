@@ -99,17 +99,22 @@ def is_resolved(added: Added, before: Sequence[Added], scenes: Sequence[DenseWin
     late = any(isinstance(one.effect, CommandEffect) for one in before)
     if not late or added.effect.name != TimeOffset.name:
         return ""
-    positions_s = float(added.values[0]) if isinstance(added.effect, LatePositions) else 0.0
     periods_s = [float(np.median(np.diff(one.run.odometry.stamps_s))) for one in scenes]
-    off_s = max(
-        float(np.abs(positions_s + delay_s((added,), one.pose_s, run_of(one))).max())
-        for one in scenes
-    )
+    off_s = farthest_off_s(added, scenes)
     if off_s > max(periods_s):
         return ""
     return (
         f"{1e3 * off_s:.0f} ms are less than the {1e3 * max(periods_s):.0f} ms from one recorded "
         "speed to the next: beside treads that act late they cannot be distinguished"
+    )
+
+
+def farthest_off_s(of_stamps: Added, scenes: Sequence[DenseWindows]) -> float:
+    """By how much an effect makes stamps of poses off at most [s]."""
+    positions_s = float(of_stamps.values[0]) if isinstance(of_stamps.effect, LatePositions) else 0.0
+    return max(
+        float(np.abs(positions_s + delay_s((of_stamps,), one.pose_s, run_of(one))).max())
+        for one in scenes
     )
 
 

@@ -2,14 +2,22 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from odometry.arrays import FloatArray
+from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
+from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.contest import Judged, margin_of, penalty
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.fit.input_noise import noise_of_windows, scatter_of_noise
 from odometry.gap.name.explanation import Explanation
+from odometry.gap.name.form_gates import farthest_off_s
 from odometry.gap.prepare.statistic import sure_sum
+from odometry.sensors import gyroscope_of
+
+LATE_TREADS = (ActuatorLag.name, CommandDelay.name)
 
 
 def undecided(found: Explanation, fitter: Fitter, config: GapConfig) -> str:
@@ -32,6 +40,7 @@ def as_near(
     """Rivals of another name that do not surely explain less than the best, in their order.
 
     What includes the best has to have as much evidence: it explains no less, with more freedom.
+    Late stamps and late treads must be apart by more than a period of the gyroscope.
     """
     others = [
         one
@@ -46,6 +55,7 @@ def as_near(
         rival
         for rival, noise in zip(others, of_others, strict=True)
         if _is_part(rival, best, config)
+        or (_are_one_period(rival, best, fitter) and rival.gain > config.mostly_closed * best.gain)
         or best.evidence - rival.evidence < config.equivalent_margin
         or (
             best.effect.name not in rival.effect.includes
@@ -57,6 +67,21 @@ def as_near(
 def _is_part(rival: Judged, best: Judged, config: GapConfig) -> bool:
     included = rival.effect.name in best.effect.includes
     return included and rival.gain > config.mostly_closed * best.gain
+
+
+def _are_one_period(one: Judged, other: Judged, fitter: Fitter) -> bool:
+    """Whether these are late stamps and treads that act late, within a period of the gyroscope.
+
+    It alone distinguishes them, and its rows are of their stamps, or means before or after.
+    """
+    by_name = {judged.effect.name: judged.fitted.effects[-1] for judged in (one, other)}
+    scenes = fitter.measured.scenes
+    if TimeOffset.name not in by_name or not by_name.keys() & {*LATE_TREADS}:
+        return False
+    gyroscopes = [gyroscope_of(scene.run.yaw_rate) for scene in scenes]
+    periods_s = [float(np.median(np.diff(of.stamps_s))) for of in gyroscopes if of is not None]
+    known = len(periods_s) == len(scenes) > 0
+    return known and farthest_off_s(by_name[TimeOffset.name], scenes) <= max(periods_s)
 
 
 def _surely_lost(
