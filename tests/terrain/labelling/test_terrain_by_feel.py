@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from terrain.labelling.given_terrain import given_by_feel
+from odometry.feel.felt import FeelConfig
+from odometry.feel.follow import follow_feel
+from terrain.labelling.given_terrain import STRETCH_S, SURE, given_by_feel
 from tests.odometry.feel.feel_drives import drive, model_of_three
 from tests.terrain.switch.test_feel_labels import joined
 
@@ -26,6 +28,15 @@ def test_labels_are_of_the_moment(model):
     assert len(named) > 0.6 * len(given.names)
     assert not given.of_images
     assert "mean probability" in given.source
+
+
+def test_a_terrain_that_ten_seconds_do_not_show_labels_nothing(model):
+    before, begin_s = joined(drive("gravel", 70, seconds=15.0), drive("snow", 71, seconds=5.0))
+    run, end_s = joined(before, drive("gravel", 73, seconds=15.0))
+    assert end_s - begin_s == pytest.approx(5.0, abs=0.2)
+    by_four_s = follow_feel(run, model, FeelConfig(stretch_s=STRETCH_S, sure=SURE))
+    assert "snow" in by_four_s.lasting_answers
+    assert given_by_feel(run, model).terrains == ("gravel",)
 
 
 def test_what_feels_like_no_terrain_labels_nothing(model):
