@@ -85,10 +85,20 @@ def _more(felt: Felt) -> Iterator[str]:
         share = (felt.answers == name).mean()
         if share > OFTEN:
             yield f"In {100 * share:.0f} % of the windows {word}."
+    yield from _of_model(felt)
+
+
+def _of_model(felt: Felt) -> Iterator[str]:
+    """What makes any answer of the model doubtful."""
     if felt.model.members.logistic is None:
         yield (
             "The model is of an older version, which hardly distinguishes terrains that it does "
             "not know: identify it again."
+        )
+    if names := felt.model.report.get("one_drive"):
+        yield (
+            f"The model felt {', '.join(names)} on one drive each: how another drive feels is not "
+            "known, and probabilities are too large."
         )
     robot = felt.run.robot.name
     if robot and felt.model.robot and robot != felt.model.robot:

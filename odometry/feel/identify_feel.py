@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, IntArray
 from odometry.config import require
 from odometry.errors import IdentificationError
 from odometry.feel.assessment import assessed, choice_words
@@ -15,6 +15,7 @@ from odometry.feel.model import FeelModel
 from odometry.feel.selection import main_labels, selected
 from odometry.feel.sensor import SensorShape
 from odometry.feel.table import FeelTable, days_of, fold_groups
+from odometry.feel.whole_drives import WholeDrives, whole_drives
 from odometry.feel.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
@@ -37,7 +38,8 @@ def identify_feel(
     Parameters
     ----------
     runs : sequence of Run
-        Of one robot; two or more on each terrain.
+        Of one robot; two or more on each terrain. Parts of one drive count as one, where each of
+        their terrains has another drive, and else a note says so.
     window_s : float or sequence of float
         1 to 5 s; of several the one that is best on runs held out.
     seed : int
@@ -74,14 +76,16 @@ def identify_feel(
     robot = robot_of(runs)
     check_no_run_twice(runs)
     windows = [[feel_windows(run, one) for run in runs] for one in lengths_s]
-    tables = [_table(of) for of in windows]
-    labels = main_labels(tables[0], len(runs))
-    groups = fold_groups(labels.tolist(), days_of(runs))
+    drives = whole_drives(runs, windows[0])
+    tables = [_table(of, drives.numbers) for of in windows]
+    labels = main_labels(tables[0], len(drives))
+    groups = fold_groups(labels.tolist(), days_of([runs[place] for place in drives.first]))
     found = assessed(tables, groups, seed)
-    everyone = np.ones(len(runs), dtype=bool)
+    everyone = np.ones(len(drives), dtype=bool)
     best = selected(tables, groups, everyone, np.random.default_rng(seed))
     table = tables[best.place]
-    by_day = len(np.unique(groups)) < len(runs)
+    by_day = len(np.unique(groups)) < len(drives)
+    notes = *drives.notes(), *notes_of(table, windows[best.place], drives, by_day=by_day)
     return FeelModel(
         table.names,
         table.design,
@@ -90,7 +94,7 @@ def identify_feel(
         best.calibration,
         best.strangeness,
         best.limits,
-        SensorShape.of(windows[best.place], table.design),
+        SensorShape.of(windows[best.place], table.design, drives.numbers),
         robot.track_width,
         robot.name,
         ", ".join(dict.fromkeys(run.name for run in runs)),
@@ -98,17 +102,18 @@ def identify_feel(
             **found.to_table(),
             "chosen": choice_words(table.design.window_s, best.choice),
             "held_out": "days" if by_day else "runs",
-            "notes": list(notes_of(table, windows[best.place], by_day=by_day)),
+            "one_drive": list(drives.of_one),
+            "notes": list(notes),
         },
         max(one.most_repeats(table.design.axes) for one in windows[best.place]),
     )
 
 
-def _table(windows: Sequence[FeelWindows]) -> FeelTable:
+def _table(windows: Sequence[FeelWindows], numbers: IntArray) -> FeelTable:
     design = Design.shared(windows)
     if not design.groups:
         raise IdentificationError("the runs have no column in common that terrain is felt by")
-    table = FeelTable.of(windows, design)
+    table = FeelTable.of(windows, design, numbers)
     _check(table, windows)
     return table
 
@@ -140,12 +145,10 @@ RATES_APART = 1.1  # times: sampling rates of one sensor differ by less
 OVERLAP = 0.0  # of these ranges: without any, terrains may differ by speed alone
 
 
-def notes_of(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) -> tuple[str, ...]:
+def notes_of(
+    table: FeelTable, windows: Sequence[FeelWindows], drives: WholeDrives, *, by_day: bool
+) -> Iterator[str]:
     """Sentences: columns that some runs lack, few runs, speeds and rates that do not overlap."""
-    return tuple(_notes(table, windows, by_day=by_day))
-
-
-def _notes(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) -> Iterator[str]:
     used = set(table.design.axes) | set(table.design.motion)
     for name in sorted({n for one in windows for n in (*one.axes, *one.motion)} - used):
         lack = [one.run_name for one in windows if name not in (*one.axes, *one.motion)]
@@ -166,7 +169,7 @@ def _notes(table: FeelTable, windows: Sequence[FeelWindows], *, by_day: bool) ->
                 f"{one} ({_range(ranges[one])} m/s) and {other} ({_range(ranges[other])} m/s) were "
                 "driven at different speeds: what distinguishes them may be the speed."
             )
-    yield from _of_rates(table, np.array([2 * one.top_hz for one in windows]))
+    yield from _of_rates(table, np.array([2 * windows[place].top_hz for place in drives.first]))
     if not by_day:
         yield "Runs are held out one by one, not by day: runs of one day may be correlated."
 

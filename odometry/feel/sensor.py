@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.design import LEAST_STEPS, Design
 from odometry.feel.spectra import LEAST_POWER, LOWEST_HZ, band_edges_hz, pair_rows
 from odometry.feel.windows import FeelWindows
@@ -44,16 +44,22 @@ class SensorShape:
     limits: FloatArray
 
     @classmethod
-    def of(cls, windows: Sequence[FeelWindows], design: Design) -> "SensorShape | None":
-        """Of the runs of a model; None where they are few, or no axis has bands."""
+    def of(
+        cls, windows: Sequence[FeelWindows], design: Design, numbers: IntArray | None = None
+    ) -> "SensorShape | None":
+        """Of the R runs of a model; None where they are few, or no axis has bands.
+
+        Those with the same number (R,) count as one.
+        """
         bands = _bands(windows, design)
         edges_hz = band_edges_hz(bands, design.top_hz)
-        named = [one.felt & (one.labels != UNKNOWN) for one in windows]
-        runs = [
-            shapes(one, design.axes, edges_hz)[of].mean(axis=0)
-            for one, of in zip(windows, named, strict=True)
-            if bands and of.sum() >= LEAST_WINDOWS
-        ]
+        numbers = np.arange(len(windows)) if numbers is None else numbers
+        by_run: dict[int, list[FloatArray]] = {}
+        for one, number in zip(windows, numbers.tolist(), strict=True):
+            rows = one.felt & (one.labels != UNKNOWN)
+            if bands:
+                by_run.setdefault(number, []).extend(shapes(one, design.axes, edges_hz)[rows])
+        runs = [np.mean(of, axis=0) for of in by_run.values() if len(of) >= LEAST_WINDOWS]
         if len(runs) < LEAST_RUNS:
             return None
         table = np.array(runs)

@@ -26,7 +26,7 @@ class FeelTable:
         Columns and covariates, one a layout.
     labels : (W,) of str
     runs : (W,)
-        Number of the run of each.
+        Number of the run of each, or of the drive that it is a part of.
     begins_s : (W,)
     speeds_m_s : (W,)
     """
@@ -39,8 +39,10 @@ class FeelTable:
     speeds_m_s: FloatArray
 
     @classmethod
-    def of(cls, windows: Sequence[FeelWindows], design: Design) -> "FeelTable":
-        """Gather the windows of runs."""
+    def of(
+        cls, windows: Sequence[FeelWindows], design: Design, numbers: IntArray | None = None
+    ) -> "FeelTable":
+        """Gather the windows of R runs; those with the same number (R,) count as one."""
         kept = [one.felt & (one.labels != UNKNOWN) for one in windows]
         counts = [int(of.sum()) for of in kept]
         return cls(
@@ -55,7 +57,7 @@ class FeelTable:
                 for layout in range(len(design.layouts))
             ),
             np.concatenate([one.labels[of] for one, of in zip(windows, kept, strict=True)]),
-            np.repeat(np.arange(len(windows)), counts),
+            np.repeat(np.arange(len(windows)) if numbers is None else numbers, counts),
             np.concatenate([one.begins_s[of] for one, of in zip(windows, kept, strict=True)]),
             np.concatenate([one.speeds_m_s[of] for one, of in zip(windows, kept, strict=True)]),
         )

@@ -1,15 +1,12 @@
-"""The terrain that a recording, its owner or feel gives: by time or by image."""
+"""The terrain that a recording or its owner gives: by time or by image."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.feel.felt import SILENT, FeelConfig
-from odometry.feel.follow import follow_feel
-from odometry.feel.model import FeelModel
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains
 
@@ -194,49 +191,3 @@ def _given(
                 "without slashes that does not begin with a dot"
             )
     return GivenTerrain(source, stamps_s, known, of_images)
-
-
-SURE = 0.8  # probability from which a window labels: a wrong label misleads the classifier
-STRETCH_S = 4.0  # so long is put together, around the moment that is labelled
-LONG_S = 10.0  # and so long has to say the same: a terrain that was never felt shows over time
-
-
-def given_by_feel(run: Run, model: FeelModel, sure: float = SURE) -> GivenTerrain:
-    """The terrain by feel of a run, where that is sure; elsewhere there is no label.
-
-    Evidence of STRETCH_S and of LONG_S is put together, half of it from before each moment and half
-    from after. Both have to give the same terrain, and the smaller probability counts.
-
-    Parameters
-    ----------
-    run : Run
-    model : FeelModel
-        Of the same robot.
-    sure : float
-        Probability from which a terrain is given.
-
-    Raises
-    ------
-    RunFolderError
-        If no moment feels like a terrain with that probability, or as `follow_feel`.
-    """
-    felt = follow_feel(run, model, FeelConfig(stretch_s=STRETCH_S, sure=sure))
-    longer = replace(felt, config=replace(felt.config, stretch_s=LONG_S))
-    late = np.searchsorted(felt.stamps_s, felt.stamps_s + (LONG_S - STRETCH_S) / 2 - 1e-6)
-    late = np.minimum(late, len(late) - 1)
-    names = felt.lasting_answers.astype(str)
-    silent = np.isin(names, [*SILENT, UNKNOWN]) | (names != longer.lasting_answers[late])
-    most = felt.lasting_probabilities.max(axis=1)
-    most = np.minimum(most, longer.lasting_probabilities[late].max(axis=1))
-    if silent.all():
-        raise RunFolderError(
-            f"{run.folder}: no moment feels like one of {', '.join(model.names)} with a "
-            f"probability of {sure:g} or more (at the most {most.max():.2f}), over {STRETCH_S:g} "
-            f"and {LONG_S:g} s around it"
-        )
-    return GivenTerrain(
-        f"feel (mean probability {most[~silent].mean():.2f})",
-        felt.stamps_s - STRETCH_S / 2,
-        tuple(np.where(silent, "", names).tolist()),
-        probabilities=most,
-    )

@@ -120,7 +120,8 @@ def label(
     from terrain.cli.recordings import checks_made, read_run
     from terrain.cli.texts.label_text import spans_by_run, summary
     from terrain.labelling.corrections import read_corrections
-    from terrain.labelling.given_terrain import SURE, given_by_feel, given_by_spans, given_terrain
+    from terrain.labelling.felt_terrain import SURE, given_by_feel
+    from terrain.labelling.given_terrain import given_by_spans, given_terrain
     from terrain.labelling.label_runs import label_runs
     from terrain.labelling.patch_files import write_labelled_patches
     from terrain.labelling.scale import LabelConfig

@@ -5,6 +5,7 @@ from dataclasses import replace
 from odometry.feel.design import Design
 from odometry.feel.identify_feel import notes_of
 from odometry.feel.table import FeelTable
+from odometry.feel.whole_drives import whole_drives
 from odometry.feel.windows import feel_windows
 from tests.odometry.feel.feel_drives import drive
 
@@ -13,7 +14,8 @@ def said(runs, top_hz=None):
     windows = [feel_windows(run, 2.0) for run in runs]
     if top_hz is not None:
         windows = [replace(one, top_hz=top) for one, top in zip(windows, top_hz, strict=True)]
-    return notes_of(FeelTable.of(windows, Design.shared(windows)), windows, by_day=True)
+    table, drives = FeelTable.of(windows, Design.shared(windows)), whole_drives(runs, windows)
+    return tuple(notes_of(table, windows, drives, by_day=True))
 
 
 def drives_at(rates_of):
