@@ -36,17 +36,21 @@ class Key:
     sign: str = ""  # "above 0", "0 or more", or any
 
 
+WIDTH = Key("track_width", (), "above 0")
 HEAD = {
     "velocity": (Key("errors_last_s", (), "0 or more"),),
     "traction": (
-        Key("track_width", (), "above 0"),
+        WIDTH,
         Key("process_variance", (3,), "above 0"),
         Key("measurement_variance", (4,), "above 0"),
         Key("variance_growth", (), "0 or more"),
     ),
 }
 FASTEST = Key("fastest_m_s", (), "above 0")
-OPTIONAL = {"velocity": (FASTEST,), "traction": (FASTEST, Key("gain_power", (), "0 or more"))}
+OPTIONAL = {
+    "velocity": (FASTEST, WIDTH),
+    "traction": (FASTEST, Key("gain_power", (), "0 or more")),
+}
 MODE = {
     "velocity": (
         Key("A", (2, 2)),

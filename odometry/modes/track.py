@@ -7,6 +7,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.arrays import FloatArray
+from odometry.errors import RunFolderError
 from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenTerrain, mode_chains
@@ -23,6 +24,7 @@ from odometry.windows.spans import within
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
 
+SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
 
 
@@ -48,7 +50,7 @@ def follow_modes(
     Raises
     ------
     RunFolderError
-        If the run lacks what the modes are recognised by.
+        As `judged_signals`.
     ParameterError
         If vision saw what is no mode.
 
@@ -66,7 +68,19 @@ def follow_modes(
 
 
 def judged_signals(run: Run, mode_set: ModeSet) -> Signals:
-    """What of a run the filters use, labelled by truth.csv where it names modes: for scoring."""
+    """What of a run the filters use, labelled by truth.csv where it names modes: for scoring.
+
+    Raises
+    ------
+    RunFolderError
+        If the run is of a robot of another track width, or lacks what the modes are recognised by.
+    """
+    width, of_modes = run.robot.track_width, mode_set.modes.track_width
+    if abs(width / of_modes - 1) > SAME_WIDTH:  # a set of older versions states none: NaN
+        raise RunFolderError(
+            f"{run.folder}: a robot of track width {width:g} m; the modes are of one of "
+            f"{of_modes:g} m: how terrain turns one robot says nothing of another"
+        )
     signals = mode_set.modes.signals(run)
     if run.truth is None or "terrain" not in run.truth:
         return signals

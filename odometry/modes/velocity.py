@@ -55,6 +55,8 @@ class VelocityModes:
         short and a long time of turning: standard deviation as a share, and what adds to its square
         by the information of a window [rad^2/s] (`held_out_turns`). None of sets of versions before
         0.36.
+    track_width : float
+        Of the robot [m]; NaN of sets of versions before 0.48.
     """
 
     names: tuple[str, ...]
@@ -68,6 +70,7 @@ class VelocityModes:
     gain_spread: FloatArray | None = None
     turn_spread: FloatArray | None = None
     turn_power: FloatArray | None = None
+    track_width: float = np.nan
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()

@@ -7,6 +7,7 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
+from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, forward_speed_m_s, velocity_signals
 from odometry.modes.identify.held_out_turns import turn_errors
@@ -59,7 +60,8 @@ def identify_velocity_modes(
     Raises
     ------
     IdentificationError
-        If a run names no terrain, or less than 10 s of one are recorded.
+        If a run names no terrain, less than 10 s of one are recorded, its treads never turn the
+        robot, or the runs are of several robots.
     RunFolderError
         If a run has no yaw rate, or is there twice, whole or in part.
 
@@ -73,6 +75,7 @@ def identify_velocity_modes(
     >>> modes.names, modes.A.shape
     (('gravel',), (1, 2, 2))
     """
+    track_width = robot_of(runs).track_width
     check_no_run_twice(runs)
     speeds = [forward_speed_m_s(run) for run in runs]
     records: dict[str, list[Record]] = {}
@@ -111,7 +114,8 @@ def identify_velocity_modes(
     errors_last_s = float(np.median(lasting_s))
     fastest_m_s = max(float(np.abs(record.table[:, 2:]).max()) for record in pooled)
     # one model for all errs on each terrain by what that differs from the others
-    turn_spread = None if shared else turn_errors(records, OMEGA, of_turns)
+    found = None if shared else turn_errors(records, OMEGA, of_turns)
+    turn_spread, turn_power = found or (None, None)
     return VelocityModes(
         names,
         blocks[..., :2],
@@ -122,7 +126,9 @@ def identify_velocity_modes(
         fastest_m_s,
         speed_power if SPEED in measured_rows else None,
         spread,
-        *(turn_spread or (None, None)),
+        turn_spread,
+        turn_power,
+        track_width,
     )
 
 
@@ -132,6 +138,11 @@ def _check(records: Mapping[str, Sequence[Record]]) -> None:
         if lasts_s < LEAST_S:
             raise IdentificationError(
                 f"{name}: {lasts_s:.1f} s recorded, expected {LEAST_S:g} s or more"
+            )
+        turns = any(np.diff(record.table[:, 2:]).any() for record in of)
+        if len(records) > 1 and not turns:  # one alone is compared with none
+            raise IdentificationError(
+                f"{name}: both treads always have the same speed; expected turns to both sides"
             )
 
 

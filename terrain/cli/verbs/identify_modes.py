@@ -76,6 +76,7 @@ def identify_modes(
     """
     import numpy as np
 
+    from odometry.modes.identify.drive_turns import drive_turns, turn_notes
     from odometry.modes.identify.identify_traction import identify_traction_modes
     from odometry.modes.identify.identify_velocity import identify_velocity_modes
     from odometry.modes.mode_pairs import pairs
@@ -113,6 +114,8 @@ def identify_modes(
     else:
         _print_velocity(modes)
     _print_alike(pairs(modes, runs))
+    for note in turn_notes(drive_turns(runs)):
+        click.echo(f"Note: {note}", err=True)
     said = ((shared, "shared model"), (common_noise, "common noise"), (paper, "as in Salvi 2024"))
     variant = "".join(f", {words}" for given, words in said if given)
     names = ", ".join(dict.fromkeys(run.name for run in runs))

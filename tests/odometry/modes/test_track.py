@@ -230,6 +230,15 @@ def test_a_run_without_a_yaw_rate_is_refused(run):
         follow_modes(bare, SET)
 
 
+def test_a_robot_of_another_width_is_refused(run):
+    width = run.robot.track_width
+    known = replace(SET, modes=replace(SET.modes, track_width=width * 1.05))
+    assert len(judged_signals(run, known)) == len(judged_signals(run, SET))
+    wider = replace(SET, modes=replace(SET.modes, track_width=width * 1.3))
+    with pytest.raises(RunFolderError, match=r"track width 0\.5 m; the modes are of one of 0\.65"):
+        judged_signals(run, wider)
+
+
 def test_one_mode_is_a_kalman_filter():
     """Uneven steps, inputs held from stamp to stamp, entries not measured, treads that stood."""
     rng = np.random.default_rng(8)

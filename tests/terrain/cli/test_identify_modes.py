@@ -93,6 +93,14 @@ def test_modes_that_answer_alike_are_named(make, out):
     assert "ice and snow differ little: driven as in these runs they take" in answer.stdout
 
 
+def test_drives_that_contradict_their_names_are_noted(make, out):
+    turns = {"ice": 1.0, "tar1": 1.3, "tar22": 1.0, "ice333": 1.3}  # noise goes with the length
+    answer = invoke(*(make(name, turn, name[:3]) for name, turn in turns.items()), "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "Note: ice, named ice, turns the robot by" in answer.stderr
+    assert "nearer to tar22 of tar" in answer.stderr
+
+
 def test_one_mode_is_not_enough(grounds, out):
     answer = invoke(grounds[0], "--out", out)
     assert answer.exit_code == 0, answer.output

@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -198,7 +199,9 @@ def test_the_same_run_gives_the_same_bytes(make, models, tmp_path):
 
 
 def test_traction_modes_need_poses(make, tmp_path):
-    write_mode_set(tmp_path / "set.toml", traction_set())
+    of_half_the_width = traction_set()
+    modes = replace(of_half_the_width.modes, track_width=1.0)
+    write_mode_set(tmp_path / "set.toml", replace(of_half_the_width, modes=modes))
     arguments = ("--models", tmp_path / "set.toml", "--out", tmp_path / "out")
     answer = invoke(make("drive"), *arguments)
     assert answer.exit_code == 0, answer.output

@@ -144,3 +144,18 @@ def test_no_yaw_rate_is_reported_by_folder(grounds):
     run = replace(grounds[0], odometry=without(grounds[0].odometry, "gyro_z"), velocity=None)
     with pytest.raises(RunFolderError, match="drive: no yaw rate"):
         identify_velocity_modes([run])
+
+
+def test_terrains_driven_straight_on_are_no_modes(grounds):
+    mud = grounds[1].odometry
+    straight = replace(mud, columns={**mud.columns, "v_right": mud["v_left"]})
+    runs = [grounds[0], replace(grounds[1], odometry=straight)]
+    with pytest.raises(IdentificationError, match="mud: both treads always have the same speed"):
+        identify_velocity_modes(runs)
+
+
+def test_runs_are_of_one_robot(grounds, modes):
+    assert modes.track_width == grounds[0].robot.track_width
+    other = replace(grounds[1], robot=replace(grounds[1].robot, track_width=0.7))
+    with pytest.raises(IdentificationError, match=r"track_width = 0\.7"):
+        identify_velocity_modes([grounds[0], other])
