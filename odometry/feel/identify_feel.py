@@ -10,6 +10,7 @@ from odometry.config import require
 from odometry.errors import IdentificationError
 from odometry.feel.assessment import assessed, choice_words
 from odometry.feel.design import Design
+from odometry.feel.doubted_runs import notes_of_doubted
 from odometry.feel.members import fitted_members
 from odometry.feel.model import FeelModel
 from odometry.feel.selection import main_labels, selected
@@ -85,7 +86,12 @@ def identify_feel(
     best = selected(tables, groups, everyone, np.random.default_rng(seed))
     table = tables[best.place]
     by_day = len(np.unique(groups)) < len(drives)
-    notes = *drives.notes(), *notes_of(table, windows[best.place], drives, by_day=by_day)
+    names = [runs[place].name for place in drives.first]
+    notes = (
+        *drives.notes(),
+        *notes_of_doubted(found, names),
+        *notes_of(table, windows[best.place], drives, by_day=by_day),
+    )
     return FeelModel(
         table.names,
         table.design,

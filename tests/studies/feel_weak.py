@@ -1,10 +1,11 @@
 """Feel where it is weak: files of one drive taken for runs, and labels of terrains never felt.
 
-    python -m tests.studies.feel_weak FOLDER [--only parts labels] [--seeds 100 101 102 103]
+    python -m tests.studies.feel_weak FOLDER [--only parts names labels] [--seeds 100 101 102 103]
 
 FOLDER holds run folders with imu.csv that name one terrain each.
 Parts: of each terrain three drives are drawn, each is cut into three files, and all other drives
 are judged by a model whose files are runs by clocks of their own, and by one that knows the drives.
+Names: those of one or two pairs of recordings are exchanged; which recordings are noted.
 Labels: `label --by-feel` of whole runs held out in five folds, and of each terrain left out.
 """
 
@@ -14,13 +15,16 @@ from pathlib import Path
 
 import numpy as np
 
+from odometry.feel.assessment import assessed
+from odometry.feel.design import Design
+from odometry.feel.doubted_runs import LEAST_OWN
 from odometry.feel.felt import FeelConfig
 from odometry.feel.follow import Felt
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.scores import balanced_accuracy
-from odometry.feel.table import stratified_folds
+from odometry.feel.table import FeelTable, stratified_folds
 from odometry.feel.windows import feel_windows
-from odometry.run import Run
+from odometry.run import UNKNOWN, Run
 from odometry.run_span import Span, cut_run
 from odometry.table import Table
 from terrain.labelling.felt_terrain import LONG_S, STRETCH_S, SURE, sure_labels
@@ -29,18 +33,21 @@ from tests.studies.feel_sensors import fitted
 DRIVES, FILES = 3, 3
 LEAST_WINDOWS = 20
 LIKELY = 0.7
+NAME_SEEDS = range(80, 86)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", nargs="+", default=["parts", "labels"])
+    parser.add_argument("--only", nargs="+", default=["parts", "names", "labels"])
     parser.add_argument("--seeds", type=int, nargs="+", default=[100, 101, 102, 103])
     given = parser.parse_args()
     runs = [Run.read(file.parent) for file in sorted(given.folder.glob("*/run.toml"))]
     windows = [feel_windows(run) for run in runs]
     if "parts" in given.only:
         parts(runs, windows, given.seeds)
+    if "names" in given.only:
+        exchanged(runs, windows)
     if "labels" in given.only:
         labels(runs, windows)
 
@@ -112,6 +119,35 @@ def shares(found, true):
 
 def by_terrain(rows, true):
     return np.mean([rows[true == name].mean(axis=0) for name in sorted(set(true))], axis=0)
+
+
+def exchanged(runs, windows):
+    """How many recordings whose names were exchanged are noted, and how many others."""
+    noted = np.zeros((2, 2), dtype=int)
+    long = np.array([one.felt.sum() >= LEAST_WINDOWS for one in windows])
+    true = np.array([run.terrain for run in runs], dtype=object)
+    for seed in NAME_SEEDS:
+        rng, named = np.random.default_rng(seed), true.copy()
+        for _ in range(1 + seed % 2):
+            names = rng.choice(sorted(set(true)), 2, replace=False)
+            some = long & (named == true)
+            one, other = (rng.choice(np.flatnonzero(some & (true == name))) for name in names)
+            named[[one, other]] = true[[other, one]]
+        tables = [of_name(one, name) for one, name in zip(windows, named, strict=True)]
+        table = FeelTable.of(tables, Design.shared(tables))
+        answers = assessed([table], np.arange(len(runs)), seed).by_length["run"]
+        own = answers.probabilities[
+            np.arange(len(runs)), np.searchsorted(table.names, answers.labels)
+        ]
+        wrong = (named != true)[answers.runs]
+        for place, kind in enumerate((wrong, ~wrong)):
+            noted[place] += (own[kind] < LEAST_OWN).sum(), kind.sum()
+    print("exchanged: noted {} of {}; right: noted {} of {}".format(*noted.ravel()))
+
+
+def of_name(windows, name):
+    labels = np.where(windows.labels == UNKNOWN, UNKNOWN, name).astype(object)
+    return replace(windows, labels=labels)
 
 
 def labels(runs, windows):
