@@ -44,14 +44,15 @@ def is_unlike(felt: Felt) -> bool:
     return bool(moving.any() and (felt.answers[moving] == UNKNOWN).mean() > UNLIKE_SHARE)
 
 
-def _more(felt: Felt) -> Iterator[str]:
+def doubts(felt: Felt) -> tuple[str, ...]:
+    """Sentences of what makes any answer doubtful."""
+    return (*_of_vibration(felt), *_of_model(felt))
+
+
+def _of_vibration(felt: Felt) -> Iterator[str]:
+    """Where it is unlike that of the model."""
     moving = felt.windows.felt
-    if not moving.any():
-        yield "The robot stands, or nothing was measured, all the time: nothing can be felt."
-        return
-    probabilities, _ = felt.of_run
-    best = max(probabilities, key=lambda name: probabilities[name])
-    if felt.foreign[-1]:
+    if moving.any() and felt.foreign[-1]:
         how = felt.model.shape_so_far.plus(felt.windows).words
         yield (
             f"{how}, or tyres or a terrain that shake the robot unlike all of them. Unknown; "
@@ -64,11 +65,18 @@ def _more(felt: Felt) -> Iterator[str]:
             f"{100 * share:.0f} % of the windows feel like nothing that the model was identified "
             f"from; the farthest off are {farthest}: another terrain, load, tyre or sensor?"
         )
-    elif felt.answer_of_run[0] != UNKNOWN and set(felt.lasting_answers.tolist()) <= {
-        best,
-        UNKNOWN,
-        *SILENT,
-    }:
+
+
+def _more(felt: Felt) -> Iterator[str]:
+    moving = felt.windows.felt
+    if not moving.any():
+        yield "The robot stands, or nothing was measured, all the time: nothing can be felt."
+        return
+    probabilities, _ = felt.of_run
+    best = max(probabilities, key=lambda name: probabilities[name])
+    yield from _of_vibration(felt)
+    is_one = set(felt.lasting_answers.tolist()) <= {best, UNKNOWN, *SILENT}
+    if is_one and not is_unlike(felt) and felt.answer_of_run[0] != UNKNOWN:
         yield f"If it is all one terrain, it is {best} with probability {probabilities[best]:.2f}."
     outside = felt.outside_speeds[moving].mean()
     if outside > OFTEN:

@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.feel.felt import SILENT, FeelConfig
+from odometry.feel.files import doubts
 from odometry.feel.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.run import UNKNOWN, Run
@@ -50,6 +51,7 @@ def given_by_feel(run: Run, model: FeelModel, sure: float = SURE) -> GivenTerrai
         felt.stamps_s - STRETCH_S / 2,
         tuple(names.tolist()),
         probabilities=most,
+        notes=doubts(felt),
     )
 
 

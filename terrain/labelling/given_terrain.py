@@ -57,6 +57,8 @@ class GivenTerrain:
         Whether a name is of what an image shows; else of the terrain under the robot.
     probabilities : (N,), optional
         Of each name, where the source has some.
+    notes : tuple of str
+        What makes the names doubtful.
     """
 
     source: str
@@ -64,6 +66,7 @@ class GivenTerrain:
     names: tuple[str, ...]
     of_images: bool = False
     probabilities: FloatArray | None = None
+    notes: tuple[str, ...] = ()
 
     def between(self, begin_s: float, end_s: float) -> frozenset[str]:
         """All names that hold at a moment between two, these included; "" where none does."""

@@ -96,6 +96,8 @@ def _classes(labelled: "LabelledTerrain") -> Iterator[str]:
 
 
 def _notes(labelled: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iterator[str]:
+    for folder, of in zip(labelled.seen, given, strict=True):
+        yield from (f"Note: {folder}: {note}" for note in of.notes)
     known = {name for each in labelled.chosen for name in (each.label, each.of.label)}
     if lost := sorted({name for of in given for name in of.terrains} - known):
         yield (

@@ -54,3 +54,11 @@ def test_labels_know_how_sure_they_are(model):
     assert np.isnan(replace(given, probabilities=None).least_probability(4.0, 8.0))
     more = given_by_feel(run, model, sure=float(np.median(given.probabilities)))
     assert 0 < sum(map(bool, more.names)) < sum(map(bool, given.names))
+
+
+def test_what_makes_feel_doubtful_is_said_with_the_labels(model):
+    run = drive("gravel", 70)
+    assert given_by_feel(run, model).notes == ()
+    other = replace(run, robot=replace(run.robot, name="another"))
+    (note,) = given_by_feel(other, model).notes
+    assert note == "The model is of 'made', the run of 'another': be wary of the answers."
