@@ -9,6 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.config import require
 from odometry.errors import IdentificationError
 from odometry.feel.assessment import assessed, choice_words
+from odometry.feel.day_notes import notes_of_days
 from odometry.feel.design import Design
 from odometry.feel.doubted_runs import notes_of_doubted
 from odometry.feel.members import fitted_members
@@ -80,7 +81,8 @@ def identify_feel(
     drives = whole_drives(runs, windows[0])
     tables = [_table(of, drives.numbers) for of in windows]
     labels = main_labels(tables[0], len(drives))
-    groups = fold_groups(labels.tolist(), days_of([runs[place] for place in drives.first]))
+    days = days_of([runs[place] for place in drives.first])
+    groups = fold_groups(labels.tolist(), days)
     found = assessed(tables, groups, seed)
     everyone = np.ones(len(drives), dtype=bool)
     best = selected(tables, groups, everyone, np.random.default_rng(seed))
@@ -90,6 +92,7 @@ def identify_feel(
     notes = (
         *drives.notes(),
         *notes_of_doubted(found, names),
+        *notes_of_days(labels.tolist(), days),
         *notes_of(table, windows[best.place], drives, by_day=by_day),
     )
     return FeelModel(
