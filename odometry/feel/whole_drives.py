@@ -11,6 +11,7 @@ from odometry.feel.windows import FeelWindows
 from odometry.run import UNKNOWN, Run
 
 PAUSE_S = 10.0  # between parts: within it a robot is brought to no other place
+OVERLAP_S = 1.0  # of parts, whose messages are late by unlike times
 
 
 @dataclass(frozen=True)
@@ -79,13 +80,13 @@ def drive_numbers(runs: Sequence[Run]) -> IntArray:
     pauses_s = spans_s[:, None, 0] - spans_s[None, :, 1]
     pauses_s = np.maximum(pauses_s, pauses_s.T)  # below 0 where two overlap
     folders = np.array([str(run.folder.resolve()) for run in runs])
-    of_folder = (folders[:, None] == folders) & (pauses_s >= 0)
+    apart = pauses_s >= -OVERLAP_S
+    of_folder = (folders[:, None] == folders) & apart
     numbers = _connected(of_folder)
-    together = _connected(of_folder | ((pauses_s >= 0) & (pauses_s <= PAUSE_S)))
+    together = _connected(of_folder | (apart & (pauses_s <= PAUSE_S)))
     for number in np.unique(together):
         of = np.flatnonzero(together == number)
-        others = ~np.eye(len(of), dtype=np.bool_)
-        if (pauses_s[np.ix_(of, of)][others] >= 0).all():
+        if (apart[np.ix_(of, of)] | np.eye(len(of), dtype=np.bool_)).all():
             numbers[of] = of[0]
     return numbers
 

@@ -41,6 +41,8 @@ def test_parts_go_on_where_another_ends():
     one, other = parts_of(drive_of("tiles", 1))
     assert numbers_of([one, other]) == numbers_of([other, one]) == [0, 0]
     assert numbers_of(parts_of(drive_of("tiles", 1), pause_s=5.0)) == [0, 0]
+    assert numbers_of([one, later(other, -0.5)]) == [0, 0]
+    assert numbers_of([one, later(other, -5.0)]) == [0, 1]
     assert numbers_of([drive_of("tiles", 1), drive_of("tiles", 2)]) == [0, 1]
 
 
