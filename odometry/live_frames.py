@@ -31,8 +31,8 @@ class LiveFrames:
     ----------
     too_late : int
         Messages that were dropped: older than a frame that was given, repeated, without a
-        finite stamp or yaw rate, or alone more than 5 s ahead of the others. Where it grows,
-        clocks do not agree, or went back.
+        finite stamp, tread speed or yaw rate, or alone more than 5 s ahead of the others. Where
+        it grows, clocks do not agree or went back, or a driver gives no numbers.
 
     Notes
     -----
@@ -65,6 +65,9 @@ class LiveFrames:
 
     def treads(self, stamp_s: float, left_m_s: float, right_m_s: float) -> None:
         """Tread speeds, in force from a stamp on."""
+        if not math.isfinite(left_m_s + right_m_s):
+            self.too_late += 1
+            return
         self._add(stamp_s, "tread_speeds_m_s", np.array([left_m_s, right_m_s], dtype=np.float64))
 
     def gyroscope(self, stamp_s: float, yaw_rate_rad_s: float) -> None:

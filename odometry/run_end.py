@@ -29,13 +29,16 @@ OFF_AT_END = "off_at_end"
 
 def run_end_events(run: Run, replay: Replay) -> tuple[FilterEvent, ...]:
     """Events that last at the end, and those that only the whole run shows."""
-    last = replay.estimates[-1]
-    found = list(ongoing(last.watch, last.stamp_s)) if last.watch is not None else []
-    found += _heading(last)
-    found += _refused(replay)
+    found = [*lasting_events(replay.estimates[-1]), *_refused(replay)]
     found += bias_events(replay)
     found += _off_at_end(run, replay)
     return tuple(found)
+
+
+def lasting_events(last: Estimate) -> list[FilterEvent]:
+    """Events that have begun and not ended at an estimate."""
+    lasting = () if last.watch is None else ongoing(last.watch, last.stamp_s)
+    return [*lasting, *_heading(last)]
 
 
 def ongoing(watch: SensorWatch, stamp_s: float) -> tuple[FilterEvent, ...]:

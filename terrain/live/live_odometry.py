@@ -24,6 +24,7 @@ from terrain.image_labels.image_labeller import OTHER_SIZE
 from terrain.live.live_feel import LiveFelt
 from terrain.live.live_source import live_feel, live_source
 from terrain.live.live_step import LiveStep
+from terrain.live.noticed_so_far import NoticedSoFar
 from terrain.sources.sources import initial_terrain
 from terrain.sources.watcher import TerrainWatcher
 from terrain.switch.place_labels import Footprint
@@ -128,7 +129,8 @@ class LiveOdometry:
         self._at_pose = at_pose
         classifier = None if self._watcher is None else self._watcher.classifier
         self._name_notes = name_notes(initial, classifier, parameters)
-        self._gaps = GapsSoFar()
+        self._gaps, self._noticed = GapsSoFar(), NoticedSoFar()
+        self._track_width_m = robot.track_width
         self._lost_s, self._lost_until_s = 0.0, 0.0
         self._images, self._unnamed = 0, Counter[str]()
         self._image_size = (0, 0) if camera is None else camera.image_size
@@ -164,8 +166,8 @@ class LiveOdometry:
         """What to know before the answers are used; some can be said after several images only.
 
         Terrains that the parameter set lacks, images unlike the training photographs, of another
-        size than the camera's or grey before a model in colour, `feel_note`, and time without tread
-        speeds.
+        size than the camera's or grey before a model in colour, `feel_note`, time without tread
+        speeds, and what the filter noticed that misleads it, the latest of each kind.
         """
         likeness = None if self.likeness is None else self.likeness.note
         lost = (
@@ -181,7 +183,8 @@ class LiveOdometry:
         )
         of_images = odd if of_other_size else "", colourless_note(self._unnamed, self._images)
         said = likeness, *of_images, self.feel_note, lost if self._lost_s else ""
-        return tuple(filter(None, (*self._name_notes, *said)))
+        noticed = self._noticed.notes(self._estimate, self._track_width_m) if self._estimate else ()
+        return tuple(filter(None, (*self._name_notes, *said, *noticed)))
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.
@@ -210,6 +213,7 @@ class LiveOdometry:
                 self._lost_until_s = frame.stamp_s
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
             self._odometer.step(self._estimate)
+        self._noticed.add(self._estimate)
         odometer = (self._odometer.pose, self._odometer.covariance, self._odometer.twist)
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:
