@@ -12,10 +12,12 @@ from odometry.arrays import FloatArray
 from odometry.bags.damage import Losses
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_types import MessageTypes
+from odometry.bags.ordered_rows import OrderedRows
 from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import Attitudes
 from odometry.bags.run_settings import run_settings
 from odometry.bags.run_streams import Learned, make_streams
+from odometry.bags.set_clock import set_back_table
 from odometry.bags.speeds import TreadSpeeds
 from odometry.bags.streams import Consumer, Stream
 from odometry.bags.survey import REPORT_EVERY, Progress, Survey
@@ -72,9 +74,11 @@ def write_run(
     with closing(Attitudes(_robot_from_imu(plan, survey))) as attitudes:
         lens = LensWatch(plan.camera_info)
         streams = make_streams(plan, survey, folder, Learned(speeds, local, attitudes, lens))
-        for file in survey.files:
-            _read(file.messages(Losses()), streams, types, progress)
         every = [one for several in streams.values() for one in several]
+        for file in survey.files:
+            for consumer in every:
+                consumer.begin_file()
+            _read(file.messages(Losses()), streams, types, progress)
         made = [one for one in every if isinstance(one, Stream)]
         for stream in made:
             stream.sink.close()
@@ -90,6 +94,9 @@ def write_run(
     settings, notes = run_settings(plan, survey, local, losses)
     seen = [*of_wheels, *lens.notes()]
     settings["source"]["notes"] += seen
+    rows_of = {one.topic: one.sink for one in made if isinstance(one.sink, OrderedRows)}
+    if set_back := set_back_table({topic: of.clock for topic, of in rows_of.items()}):
+        settings["source"]["clock_set_back"] = set_back
     (folder / "run.toml").write_text(tomli_w.dumps(settings), encoding="utf-8")
     rows = {one.file: (one.sink.written, one.topic) for one in made if one.sink.written}
     return Imported(rows, (*plan.notes, *notes, *seen, *of_attitudes), losses)
@@ -166,6 +173,11 @@ def lost_of(stream: Stream, said: int = 0) -> Iterator[str]:
         yield (
             f"{topic}: {sink.back} messages have a stamp that goes back{how_far}; dropped "
             "(--time log takes the times at which the bag received them)"
+        )
+    if isinstance(sink, OrderedRows) and sink.clock.left_out:
+        yield (
+            f"{topic}: {sink.clock.left_out} messages have stamps that had been there, as a clock "
+            "was set back; dropped (--time log takes the times at which the bag received them)"
         )
     if incomplete := getattr(sink, "incomplete", 0) - said:
         yield f"{topic}: {incomplete} rows lack a number that {stream.file} needs; dropped"

@@ -8,6 +8,7 @@ from typing import TextIO
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
+from odometry.bags.set_clock import SetClock
 from odometry.io.csv_columns import LARGEST, LARGEST_BY_NAME
 
 LARGEST_NUMBER = 1e12  # of a number in a message
@@ -28,6 +29,8 @@ class OrderedRows:
         back; with a number missing that has to be there.
     farthest_back_s : float
         How far the worst stamp goes back.
+    clock : SetClock
+        Leaves out rows behind a clock that was set back.
     """
 
     def __init__(self, file: Path, names: tuple[str, ...], columns: Columns, needed: int) -> None:
@@ -46,6 +49,7 @@ class OrderedRows:
         """
         self.written = self.repeated = self.back = self.incomplete = 0
         self.farthest_back_s = 0.0
+        self.clock = SetClock()
         self._file, self._names, self._columns = file, names, columns
         self._needed = needed
         self._stream: TextIO | None = None
@@ -58,13 +62,17 @@ class OrderedRows:
 
     def add(self, stamp_ns: int, row: tuple[float, ...]) -> None:
         """Take in a row."""
-        self._stamps.append(stamp_ns)
-        self._rows.append(row)
+        for stamp, one in self.clock.add(stamp_ns, row):
+            self._stamps.append(stamp)
+            self._rows.append(one)
         if len(self._stamps) >= HELD:
             self._write(HELD)
 
     def close(self) -> None:
         """Write what is held; a file without rows is not made."""
+        for stamp, row in self.clock.rest():
+            self._stamps.append(stamp)
+            self._rows.append(row)
         self._write(0)
         if self._stream is not None:
             self._stream.close()

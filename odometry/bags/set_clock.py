@@ -1,11 +1,17 @@
 """A clock that was set back while a bag was recorded: rows of two times have the same stamps."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 Row = tuple[float, ...]
-LEAST_NS = 100_000_000  # of a clock that was set: rows out of order come later by less
-LEAST_ROWS = 5  # in a row, each behind the one before
+LEAST_NS, LEAST_ROWS = 100_000_000, 5  # of a clock that was set
+MOST_ROWS = 10_000  # in a row behind the latest stamp: no row merely comes so late
+IN_ORDER = 0.9  # share of them that lie behind the one before
+PACE = 1.5  # of the usual one, at most, at which their stamps rise
+NEAR = 1 / 4  # of the way back is left when the latest stamp is passed, or less
 SAME_NS = 2_000_000_000  # topics whose clock was set at times that differ by less: one event
 
 
@@ -28,47 +34,77 @@ class SetBack:
 class SetClock:
     """Parts rows that come late from rows behind a clock that was set back, which are left out.
 
-    Rows that come late are few in a row, or late by little: they are used. Five in a row with
-    rising stamps, the first of them behind the latest stamp by 0.1 s and more, are of a clock that
-    was set back; what follows up to the latest stamp would lie among the rows of another time.
+    Where a clock is set back, all rows that follow lie behind the latest stamp, until theirs have
+    come up to it: they would lie among rows of another time. Rows that merely come late are fewer,
+    in no order, farther apart, or the next in time comes before they have come near.
 
     Attributes
     ----------
     found : list of SetBack
+    left_out : int
+        Rows.
     """
 
     def __init__(self) -> None:
         self.found: list[SetBack] = []
-        self._latest_ns = -(2**63)
+        self.left_out = 0
+        self._count, self._first_ns, self._latest_ns = 0, 2**63, -(2**63)
         self._late: list[tuple[int, Row]] = []  # not yet decided
         self._is_set = False
         self._file_begins = True
 
     def begin_file(self) -> None:
-        """Rows of another file come next: its first ones may be of the time of the one before."""
+        """Rows of another file come next, which may be of the time of the one before."""
         self._file_begins = True
 
     def add(self, stamp_ns: int, row: Row) -> Iterable[tuple[int, Row]]:
         """Take in a row; those, in the order in which they came, that are to be used."""
-        begins, self._file_begins = self._file_begins, False
-        if stamp_ns >= self._latest_ns or begins:
-            late = self.rest()
-            self._latest_ns = max(stamp_ns, self._latest_ns) if not begins else stamp_ns
-            return (*late, (stamp_ns, row))
+        self._count += 1
+        if stamp_ns >= self._latest_ns or self._file_begins:
+            self._first_ns = min(self._first_ns, stamp_ns)
+            used = (*self._decided(), (stamp_ns, row))
+            self._latest_ns, self._file_begins, self._is_set = stamp_ns, False, False
+            return used
         if self._is_set:
+            self.left_out += 1
             return ()
-        if self._late and stamp_ns <= self._late[-1][0]:
-            return (*self.rest(), (stamp_ns, row))
         self._late.append((stamp_ns, row))
-        by_ns = self._latest_ns - self._late[0][0]
-        if by_ns < LEAST_NS:
-            return self.rest()
-        if len(self._late) == LEAST_ROWS:
-            self.found.append(SetBack(self._latest_ns, by_ns))
-            self._late, self._is_set = [], True
-        return ()
+        return self.rest() if len(self._late) == MOST_ROWS else ()
 
     def rest(self) -> tuple[tuple[int, Row], ...]:
-        """Rows that came late and are used, as no more follow."""
-        late, self._late, self._is_set = tuple(self._late), [], False
-        return late
+        """Rows that are to be used, where the time before them does not come again."""
+        return self._decided(comes_near=True)
+
+    def _decided(self, *, comes_near: bool = False) -> tuple[tuple[int, Row], ...]:
+        """Rows that came late, without those behind a clock that was set back."""
+        late, self._late = tuple(self._late), []
+        if len(late) < LEAST_ROWS:
+            return late
+        stamps_ns = np.array([stamp_ns for stamp_ns, _ in late])
+        by_ns = self._latest_ns - late[0][0]
+        near = comes_near or self._latest_ns - stamps_ns.max() <= NEAR * by_ns
+        period_ns = (self._latest_ns - self._first_ns) / max(self._count - len(late), 1)
+        at_pace = np.ptp(stamps_ns) <= PACE * period_ns * len(late)
+        in_order = np.mean(np.diff(stamps_ns) > 0) >= IN_ORDER
+        if by_ns < LEAST_NS or not (near and at_pace and in_order):
+            return late
+        self.found.append(SetBack(self._latest_ns, by_ns))
+        self.left_out += len(late)
+        self._is_set = True
+        return ()
+
+
+def set_back_table(clocks: Mapping[str, SetClock]) -> list[dict[str, Any]]:
+    """`clock_set_back` of the table [source]: stamp and size in seconds, and the topics."""
+    apart: list[tuple[SetBack, dict[str, None]]] = []
+    for topic, clock in clocks.items():
+        for one in clock.found:
+            near = [topics for of, topics in apart if abs(of.at_ns - one.at_ns) < SAME_NS]
+            if near:
+                near[0][topic] = None
+            else:
+                apart.append((one, {topic: None}))
+    return [
+        {"t": one.at_ns / 1e9, "by": one.by_ns / 1e9, "topics": list(topics)}
+        for one, topics in apart
+    ]

@@ -35,6 +35,9 @@ class Consumer(ABC):
         except BagError as problem:
             self.dropped[str(problem)] += 1
 
+    def begin_file(self) -> None:  # noqa: B027 - most need not know
+        """Messages of another file come next."""
+
     @abstractmethod
     def take(self, message: Message, content: Any) -> None:
         """Take in a message; BagError if it cannot be used."""
@@ -81,6 +84,10 @@ class Rows(Stream):
         super().__init__(topic, file, sink, by_header=by_header)
         self._rows, self._read = sink, read
 
+    def begin_file(self) -> None:
+        """Messages of another file come next."""
+        self._rows.clock.begin_file()
+
     def take(self, message: Message, content: Any) -> None:
         """Take in a message; BagError if it cannot be used."""
         self._rows.add(self.stamp_ns(message, header_ns(content)), self._read(content))
@@ -94,6 +101,10 @@ class TransformRows(Stream):
     ) -> None:
         super().__init__(topic, file, sink, by_header=by_header)
         self._rows, self._poses = sink, poses
+
+    def begin_file(self) -> None:
+        """Messages of another file come next."""
+        self._rows.clock.begin_file()
 
     def take(self, message: Message, content: Any) -> None:
         """Take in a message; BagError if it cannot be used."""

@@ -42,6 +42,7 @@ from odometry.checks.stamps.interleaved import interleaved
 from odometry.checks.stamps.joined_recordings import joined_recordings, without_seams
 from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
+from odometry.checks.stamps.set_back import set_back
 from odometry.checks.stamps.silent_rows import silent_rows
 from odometry.checks.stamps.stamp_pace import stamp_pace
 from odometry.checks.stamps.stamps import stamps, unreadable_stamps
@@ -72,6 +73,7 @@ Check = Callable[[Evidence], Iterator[Finding]]
 CHECKS: tuple[Check, ...] = (
     stamps,
     stamp_pace,
+    set_back,
     interleaved,
     computed_poses,
     joined_recordings,

@@ -16,6 +16,7 @@ CATALOGUE: dict[str, str] = {
     "empty_cells": "rows without a value, in columns that others have",
     "odometry_gap": "rows of odometry.csv are lost",
     "odometry_silent": "no rows of odometry.csv for a while, in which the robot moves on",
+    "clock_set_back": "a clock that was set back while a bag was recorded",
     "clock_set": "a clock that was set while recording",
     "track_width": "track width far from the width that turns imply",
     "robot_size": "sizes of [robot] in another unit",
