@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,6 +21,9 @@ AGAINST_SHARE = 0.8  # of the spans in which two wheels turn against one another
 SCALED = 1.3
 CLEAR = 1.5  # the misfit of the odd one of two wheels, against that of the other
 RELATED = 0.5  # correlation of two wheels that slip, at least
+HELD_SPANS = 10  # five seconds with one value, in which others of the side change
+SAME_M_S = 1e-9
+CHANGES_M_S, CHANGES, HELD_SHARE = 0.15, 0.5, 0.2  # apart, by so much of the value, so often
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,7 @@ def _of_side(
 ) -> Iterator[Contradiction]:
     """Contradictions of a side; the other side tells which of two wheels is the odd one."""
     alive = []
+    held = [_held(speeds[:, k], np.delete(speeds, k, axis=1)) for k in range(len(names))]
     for place, name in enumerate(names):
         others = np.delete(speeds, place, axis=1)
         fastest = np.abs(others).max(axis=1, initial=0)
@@ -116,6 +121,13 @@ def _of_side(
                 f"{name} stays at zero in {100 * np.mean(still):.0f} % of the time in which the "
                 f"others of its side move (up to {fastest.max():.2f} m/s): its encoder is dead, or "
                 "its number is not filled in",
+            )
+        elif held[place] > 0 and held[place] == max(held):
+            yield Contradiction(
+                name,
+                True,
+                f"{name} keeps one speed to the last digit in {100 * held[place]:.2g} % of the "
+                "time while the others of its side change: its last value goes on",
             )
         else:
             alive.append(place)
@@ -131,6 +143,21 @@ def _of_side(
             if odd is not None:
                 how = "by the other side, if the robot drives ahead more than it turns on the spot"
             yield replace(one, cause=f"{one.cause} ({how})")
+
+
+def _held(wheel: FloatArray, others: FloatArray) -> float:
+    """In which share of the time a wheel (N,) kept one speed while others (N, k) had another."""
+    if not others.shape[1]:
+        return 0.0
+    ends = np.flatnonzero(np.abs(np.diff(wheel)) > SAME_M_S) + 1
+    held = 0
+    for begin, end in pairwise([0, *ends.tolist(), len(wheel)]):
+        if end - begin < HELD_SPANS or abs(wheel[begin]) < STILL_M_S:
+            continue
+        apart = np.abs(others[begin:end] - wheel[begin]).max(axis=1)
+        if np.mean(apart > max(CHANGES_M_S, CHANGES * abs(wheel[begin]))) > HELD_SHARE:
+            held += end - begin
+    return held / len(wheel)
 
 
 def _of_pair(names: tuple[str, str], odd: FloatArray, other: FloatArray) -> Iterator[Contradiction]:

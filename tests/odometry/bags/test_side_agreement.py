@@ -88,6 +88,26 @@ def test_a_wheel_that_dies_on_the_way_is_named(tmp_path):
         speeds(bag, tmp_path)
 
 
+@pytest.mark.parametrize("place", [0, 3])
+def test_a_wheel_that_keeps_its_last_speed_is_named(place, tmp_path):
+    """A driver that hears a wheel no more goes on with the last that it heard."""
+
+    def change(rates):
+        rates[200:, place] = rates[200, place]
+        return rates
+
+    bag = bag_of(change)
+    with pytest.raises(BagError, match=f"{NAMES[place]} keeps one speed to the last digit in 6"):
+        speeds(bag, tmp_path)
+
+
+def test_wheels_that_keep_one_speed_together_are_right(tmp_path):
+    """A simulator without noise, whose robot drives on evenly."""
+    rates = np.repeat([[4.0], [2.0], [5.0]], 200, axis=0) * [1.0, 1.0, 1.1, 1.1]
+    found, _ = speeds(bag_of(lambda _: rates), tmp_path)
+    np.testing.assert_allclose(found[:, 0], rates[:, [0, 2]].mean(axis=1) * RADIUS_M)
+
+
 def test_the_odd_one_of_three_is_known_without_the_other_side(tmp_path):
     bag = bag_of(times(4, 1.5), SIX)
     with pytest.raises(BagError, match=r"middle_left_wheel turns 1.5\d* times as fast as the oth"):
