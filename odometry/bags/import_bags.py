@@ -13,6 +13,7 @@ from odometry.bags.damage import Losses
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.ordered_rows import OrderedRows
+from odometry.bags.places_watch import PlacesWatch
 from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import Attitudes
 from odometry.bags.run_settings import run_settings
@@ -73,7 +74,9 @@ def write_run(
     local, speeds = LocalMetres(), TreadSpeeds(plan.wheels, plan.separation_m)
     with closing(Attitudes(_robot_from_imu(plan, survey))) as attitudes:
         lens = LensWatch(plan.camera_info)
-        streams = make_streams(plan, survey, folder, Learned(speeds, local, attitudes, lens))
+        places = PlacesWatch(plan.wheels, plan.robot.wheel_radius_m)
+        learned = Learned(speeds, local, attitudes, lens, places)
+        streams = make_streams(plan, survey, folder, learned)
         every = [one for several in streams.values() for one in several]
         for file in survey.files:
             for consumer in every:
@@ -89,6 +92,7 @@ def write_run(
         ]
         losses = (*survey.losses, *speeds.lost(), *lost)
         _check_wheels(wheels, speeds, losses, of_places=not plan.wheels.speeds)
+        places.check()
         of_wheels = [*speeds.agreement.verdict(), *speeds.counters.notes(plan.wheels.topic)]
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)

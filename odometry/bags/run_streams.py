@@ -13,6 +13,7 @@ from odometry.bags.image_files import ImageFiles
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
+from odometry.bags.places_watch import PlacesWatch
 from odometry.bags.plan import Plan
 from odometry.bags.pose_rows import (
     POSE_COLUMNS,
@@ -47,12 +48,15 @@ class Learned:
         Those of the robot.
     lens : LensWatch
         Whether the calibration of the camera stays.
+    places : PlacesWatch
+        Whether velocities of joints are those of their positions.
     """
 
     speeds: TreadSpeeds
     local: LocalMetres
     attitudes: Attitudes
     lens: LensWatch
+    places: PlacesWatch
 
 
 def make_streams(
@@ -61,6 +65,8 @@ def make_streams(
     """Streams by topic, which fill what is learned."""
     streams: dict[str, list[Consumer]] = {}
     made: list[Consumer] = [_wheels(plan, survey, folder, learned.speeds)]
+    if plan.wheels.has_both:
+        made.append(learned.places)
     if plan.imu:
         made.append(_imu(plan, survey, folder, learned.attitudes))
     if plan.reference:

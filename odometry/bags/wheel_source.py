@@ -51,6 +51,9 @@ class WheelSource:
         Of the numbers, one of UNITS; "" of a twist.
     stated : bool
         Whether the user says which wheels are left and right.
+    has_both : bool
+        Of joint states with positions beside the velocities, of which the user says neither which
+        are taken, nor their unit.
     """
 
     topic: str
@@ -64,6 +67,7 @@ class WheelSource:
     why: str = ""
     unit: str = ""
     stated: bool = False
+    has_both: bool = False
 
 
 def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | None) -> WheelSource:
@@ -122,6 +126,7 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
         f"{', '.join(right)} (right) in {unit}{_left_out(dead)}",
         unit,
         stated,
+        joints and is_speed and not {"unit", "values"} & set(topic_map),
     )
 
 
