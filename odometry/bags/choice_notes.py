@@ -5,6 +5,7 @@ from typing import Any
 
 from odometry.bags.message_fields import FIX, ODOMETRY, TWISTS
 from odometry.bags.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no_wheels_move
+from odometry.bags.robot_messages import RobotMessages
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import candidates
 from odometry.bags.topic_roles import TopicMap
@@ -49,6 +50,17 @@ def reference_notes(
     fixes = [name for name, topic in topics.items() if topic.message_type == FIX]
     how = f"--reference {fixes[0]} takes the fixes" if fixes else "--reference none leaves it out"
     return [f"reference: {taken} is {kind.name} by {kind.sign}{drift}; {how}"]
+
+
+def restated_frames(robot: RobotMessages, named: Mapping[str, str]) -> list[str]:
+    """That static transforms state the way to a frame twice, otherwise; `named` by topic."""
+    return [
+        f"warning: {topic}: static transforms state the frame {frame} twice, {change}: the last is "
+        "taken. Which is right? If the first, correct [sensors] and [camera] of run.toml"
+        for topic, of in named.items()
+        for frame, change in robot.restated.items()
+        if frame in robot.fixed.above(of)
+    ]
 
 
 def equal_topics(

@@ -3,7 +3,13 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from odometry.bags.choice_notes import equal_topics, reference_notes, wheel_notes
+from odometry.bags.choice_notes import (
+    equal_topics,
+    reference_notes,
+    restated_frames,
+    wheel_notes,
+)
+from odometry.bags.imu_fields import not_measured
 from odometry.bags.message_fields import (
     FIX,
     IMAGES,
@@ -120,9 +126,11 @@ def make_plan(survey: Survey, topic_map: TopicMap) -> Plan:
         f"wheel speeds: {wheels.topic}: {wheels.why}",
         *(f"{role}: {name}" for role, name in {**by_role, "camera": info}.items() if name),
         *said,
+        *(not_measured(everything[imu]) if imu else ()),
         *own.notes,
         *wheel_notes(everything, topic_map.wheels, taken),
         *reference_notes(topics, topic_map.reference, reference),
+        *restated_frames(survey.robot, frames),
         *equal_topics(topics, topic_map, {"wheels": taken, **by_role}),
         *_no_reference(topics, topic_map, reference, survey),
     ]

@@ -20,6 +20,7 @@ from odometry.bags.wheel_names import is_wheel, side_of
 from odometry.errors import BagError
 
 BASES = ("base_footprint", "base_link", "base", "chassis_link", "body", "trunk")
+UNEQUAL = 1.02  # ratio of radii
 HOW_TRACK = "measure from the middle of the left wheels (or tracks) to the middle of the right ones"
 HOW_HEIGHT = "measure how high the origin of that frame is above the terrain"
 
@@ -93,6 +94,11 @@ def robot_frame(
     if radius is None and radii:
         radius = mean(radii)
         notes.append(f"wheel radius {radius:.4g} m: from the robot description")
+        if max(radii) > UNEQUAL * min(radii):
+            notes.append(
+                f"warning: the robot description has wheels of {min(radii):.4g} to "
+                f"{max(radii):.4g} m radius, of which this is the mean: state --wheel-radius"
+            )
     elif radius is None and "wheel_radius" in robot.numbers:
         radius = robot.numbers["wheel_radius"]
         notes.append(f"wheel radius {radius:.4g} m: from a parameter in the bag")

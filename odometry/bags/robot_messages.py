@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.bags.topic import Message
-from odometry.bags.transforms import Transforms, stated
+from odometry.bags.transforms import Transforms, change_of, stated
 from odometry.bags.wheel_names import is_wheel, side_of
 from odometry.geometry import se3
 
@@ -134,6 +134,7 @@ class RobotMessages:
         self.description = RobotDescription()
         self._described: dict[str, RobotDescription] = {}
         self.numbers: dict[str, float] = {}
+        self.restated: dict[str, str] = {}  # by frame: how it is stated otherwise later
 
     def may_describe_robot(self, message: Message) -> bool:
         """Whether a message of ROBOT_TYPES may say something of the robot."""
@@ -150,7 +151,7 @@ class RobotMessages:
             self._moving_looks += not fixed
             found = stated(content.transforms)
             if fixed:
-                self._fixed.update(found)
+                self._fix(found)
                 return
             for child, link in found.items():
                 before = self._moving.setdefault(child, link)
@@ -164,6 +165,12 @@ class RobotMessages:
                     self._describe(one.value.string_value, str(content.node))
                 elif one.value.type == DOUBLE and one.name in NUMBERS:
                     self.numbers[NUMBERS[one.name]] = one.value.double_value
+
+    def _fix(self, found: dict[str, Any]) -> None:
+        for child in found.keys() & self._fixed.keys():
+            if change := change_of(self._fixed[child], found[child]):
+                self.restated[child] = change
+        self._fixed.update(found)
 
     @property
     def fixed(self) -> Transforms:

@@ -10,6 +10,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.bags.fix_rows import fix_reader
 from odometry.bags.image_files import ImageFiles
+from odometry.bags.imu_fields import FORCE, RATE, measures
 from odometry.bags.lens_watch import LensWatch
 from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
 from odometry.bags.ordered_rows import OrderedRows
@@ -89,11 +90,10 @@ def _wheels(plan: Plan, survey: Survey, folder: Path, speeds: TreadSpeeds) -> St
 
 
 def _imu(plan: Plan, survey: Survey, folder: Path, attitudes: Attitudes) -> Stream:
-    sample = survey.topics[plan.imu].sample
+    topic = survey.topics[plan.imu]
+    gyro, accel = measures(topic, RATE), measures(topic, FORCE)
     # REP-145: a covariance that begins with -1 says that the sensor does not measure this
-    gyro = sample.angular_velocity_covariance[0] != -1
-    accel = sample.linear_acceleration_covariance[0] != -1
-    turned = sample.orientation_covariance[0] != -1
+    turned = topic.sample.orientation_covariance[0] != -1
     names = IMU_COLUMNS[: 3 * gyro] + IMU_COLUMNS[3 : 3 + 3 * accel]
 
     def read(message: Any) -> tuple[float, ...]:

@@ -54,6 +54,7 @@ MOVING_TYPES = (
     "sensor_msgs/msg/JointState",
     "nav_msgs/msg/Odometry",
     "sensor_msgs/msg/NavSatFix",
+    "sensor_msgs/msg/Imu",
 )
 Ranges = dict[tuple[str, str], tuple[float, float]]
 
@@ -88,6 +89,9 @@ def _values(message: Any) -> Iterator[tuple[str, str, float]]:
         yield PLACE, "y", place.y
         yield PLACE, "z", place.z
         return
+    if hasattr(message, "angular_velocity"):
+        yield from _inertial(message)
+        return
     if hasattr(message, "latitude"):
         if message.status.status >= 0:
             yield PLACE, "latitude", message.latitude
@@ -97,6 +101,18 @@ def _values(message: Any) -> Iterator[tuple[str, str, float]]:
         yield VELOCITY, name, float(value)
     for name, value in zip(message.name, message.position, strict=False):
         yield PLACE, name, float(value)
+
+
+def _inertial(message: Any) -> Iterator[tuple[str, str, float]]:
+    """Rates and forces of an Imu, without those that it says are not measured.
+
+    REP-145: a covariance that begins with -1 says so.
+    """
+    for what in ("angular_velocity", "linear_acceleration"):
+        if getattr(message, f"{what}_covariance")[0] != -1:
+            values = getattr(message, what)
+            for axis in "xyz":
+                yield VELOCITY, f"{what}.{axis}", getattr(values, axis)
 
 
 @dataclass(frozen=True)

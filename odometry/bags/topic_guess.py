@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
+from odometry.bags.imu_fields import RATE, measures
 from odometry.bags.message_fields import (
     CAMERA_INFO,
     COMPRESSED_IMAGE,
@@ -39,7 +40,8 @@ COMMANDS = re.compile(
 NO_COLOUR = re.compile(
     r"depth|infra|(^|[/_])ir([/_]|$)|thermal|disparity|mask|debug", re.IGNORECASE
 )
-RECTIFIED = re.compile(r"rect", re.IGNORECASE)
+RECTIFIED = re.compile(r"(?i:(^|[/_.-])rect)|Rect")  # not: direct, unrectified
+ON_ROBOT = re.compile(r"optical|(^|[/_])base_(link|footprint)$", re.IGNORECASE)
 SPEEDS = re.compile(r"wheel|encoder|track|tread|motor|speed|veloc|rpm|drive", re.IGNORECASE)
 UNIT_MARKS = (
     ("rpm", r"rpm"),
@@ -84,11 +86,18 @@ def guess(topic: Topic) -> list[Guess]:
     if kind in _BY_TYPE:
         return _BY_TYPE[kind](topic)
     if kind in POSES:
-        rank = 1 if NAMES[TRUTH].search(name) else 20 if NAMES[FUSED].search(name) else 10
-        return [Guess("reference", rank, "poses")]
+        return [_poses(topic)]
     if kind in TWISTS:
         return _twist(topic)
     return _fields(topic)
+
+
+def _poses(topic: Topic) -> Guess:
+    frame = topic.sample.header.frame_id
+    if ON_ROBOT.search(frame):
+        return Guess("", LIKELY, f"poses in {frame}, a frame of the robot: of what it sees")
+    fused = 20 if NAMES[FUSED].search(topic.name) else 10
+    return Guess("reference", 1 if NAMES[TRUTH].search(topic.name) else fused, "poses")
 
 
 def best(topics: Mapping[str, Topic], role: str) -> str | None:
@@ -137,6 +146,13 @@ def _joints(topic: Topic) -> list[Guess]:
     if not left:
         return [Guess("", LIKELY, "joints, but no wheels of a left and a right side by name")]
     return [Guess("wheels", 1, f"{', '.join(left)} | {', '.join(right)}")]
+
+
+def _imu(topic: Topic) -> Guess:
+    rank = 1 + ("raw" in topic.name)
+    if measures(topic, RATE):
+        return Guess("imu", rank, "")
+    return Guess("imu", rank + GUESSED, "no angular velocities")
 
 
 def _images(topic: Topic) -> list[Guess]:
@@ -202,7 +218,7 @@ def unit_of(name: str, paths: Iterable[str]) -> str:
 
 _BY_TYPE: dict[str, Callable[[Topic], list[Guess]]] = {
     JOINTS: _joints,
-    IMU: lambda topic: [Guess("imu", 1 + ("raw" in topic.name), "")],
+    IMU: lambda topic: [_imu(topic)],
     FIX: lambda _: [Guess("reference", 30, "positions by satellites")],
     POINT: lambda topic: [
         Guess("reference", 3 if NAMES[TRUTH].search(topic.name) else 35, "positions")

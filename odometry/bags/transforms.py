@@ -1,5 +1,6 @@
 """Where frames of a robot stand: transforms from messages and robot descriptions."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -37,6 +38,10 @@ class Transforms:
         if common is None:
             return None
         return np.asarray(se3.inverse(target_chain[common]) @ source_chain[common])
+
+    def above(self, frame: str) -> set[str]:
+        """Names of a frame and of all its ancestors."""
+        return set(self._chain(frame))
 
     def _chain(self, frame: str) -> dict[str, FloatArray]:
         """Pose of `frame` in itself and in each of its ancestors, nearest first."""
@@ -76,6 +81,21 @@ def stated(messages: Iterable[Any]) -> dict[str, tuple[str, FloatArray]]:
             parent, child = plain_frame(one.header.frame_id), plain_frame(one.child_frame_id)
             found[child] = (parent, pose)
     return found
+
+
+SAME_M, SAME_RAD = 1e-3, 1e-3  # rounding
+
+
+def change_of(before: tuple[str, FloatArray], after: tuple[str, FloatArray]) -> str:
+    """How a parent and a pose (4, 4) in it differ from others, in words; empty where they agree."""
+    if before[0] != after[0]:
+        return f"in {before[0]}, then in {after[0]}"
+    change = se3.inverse(before[1]) @ after[1]
+    moved_m = float(np.linalg.norm(change[:3, 3]))
+    turned_rad = math.acos(np.clip((np.trace(change[:3, :3]) - 1) / 2, -1, 1))
+    if moved_m < SAME_M and turned_rad < SAME_RAD:
+        return ""
+    return f"{moved_m:.3g} m and {math.degrees(turned_rad):.3g} degrees apart"
 
 
 class TransformPoses:
