@@ -93,7 +93,11 @@ def write_run(
         losses = (*survey.losses, *speeds.lost(), *lost)
         _check_wheels(wheels, speeds, losses, of_places=not plan.wheels.speeds)
         places.check()
-        of_wheels = [*speeds.agreement.verdict(), *speeds.counters.notes(plan.wheels.topic)]
+        of_wheels = [
+            *speeds.half_turns(),
+            *speeds.agreement.verdict(),
+            *speeds.counters.notes(plan.wheels.topic),
+        ]
         of_attitudes = _attitudes_added(attitudes, plan.imu, folder)
     settings, notes = run_settings(plan, survey, local, losses)
     seen = [*of_wheels, *lens.notes()]

@@ -66,7 +66,8 @@ def make_streams(
     """Streams by topic, which fill what is learned."""
     streams: dict[str, list[Consumer]] = {}
     made: list[Consumer] = [_wheels(plan, survey, folder, learned.speeds)]
-    if plan.wheels.has_both:
+    wheels = plan.wheels
+    if wheels.kind == "joints" and wheels.speeds and not wheels.values_stated | wheels.unit_stated:
         made.append(learned.places)
     if plan.imu:
         made.append(_imu(plan, survey, folder, learned.attitudes))

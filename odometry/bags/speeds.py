@@ -16,6 +16,9 @@ from odometry.errors import BagError
 from odometry.geometry.angles import wrap
 
 MOST_NAMED = 6  # wheels in a sentence
+# Of a turn between two messages: places within one turn do not say which way a wheel turned by half
+# a one. Of the moving ones such a share is near it where some are beyond.
+FAR_TURN, MOVING_TURN, FAR_SHARE, LEAST_FAR = 0.4, 0.02, 0.02, 5
 FASTEST_M_S = 50.0  # no robot's tread is faster: an encoder was reset, or a number is broken
 Row = tuple[float, ...]
 
@@ -103,6 +106,7 @@ class TreadSpeeds:
         self.agreement = SideAgreement(source)
         self.counters = Counters()
         self.too_fast = 0
+        self._far = self._moving = 0
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Stamps (M,) and tread speeds (M, 2) of rows (N, k)."""
@@ -137,6 +141,26 @@ class TreadSpeeds:
             f"or{unit} is wrong: see --unit"
         ]
 
+    def half_turns(self) -> list[str]:
+        """What is to be said of wheels that turn by half a turn between two messages.
+
+        Raises
+        ------
+        BagError
+            If the user does not state that positions are to be taken.
+        """
+        if self._far < max(LEAST_FAR, FAR_SHARE * self._moving):
+            return []
+        said = (
+            f"positions within one turn change by nearly half a turn between two messages "
+            f"({self._far} of {self._moving} changes): whether a wheel turned by less one way "
+            "or by more the other way is not known. Record joint states more often, or velocities"
+        )
+        if self._source.values_stated:
+            return [f"warning: {said}"]
+        how = 'values = "position" in [wheels] of a map takes them all the same'
+        raise BagError(f"{self._source.topic}: {said}; {how}")
+
     def _differences(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Rates of change (N - 1, k) of places, with the last row of the call before."""
         if self._held is not None:
@@ -150,6 +174,8 @@ class TreadSpeeds:
         if np.isfinite(self._source.wraps_at):
             turn = self._source.wraps_at
             steps -= turn * np.rint(steps / turn)
+            self._far += int(np.count_nonzero(np.abs(steps) > FAR_TURN * turn))
+            self._moving += int(np.count_nonzero(np.abs(steps) > MOVING_TURN * turn))
         return stamps_ns[:-1], steps / seconds
 
 

@@ -51,9 +51,8 @@ class WheelSource:
         Of the numbers, one of UNITS; "" of a twist.
     stated : bool
         Whether the user says which wheels are left and right.
-    has_both : bool
-        Of joint states with positions beside the velocities, of which the user says neither which
-        are taken, nor their unit.
+    values_stated, unit_stated : bool
+        Whether the user says that velocities, or positions, are taken, and their unit.
     """
 
     topic: str
@@ -67,7 +66,8 @@ class WheelSource:
     why: str = ""
     unit: str = ""
     stated: bool = False
-    has_both: bool = False
+    values_stated: bool = False
+    unit_stated: bool = False
 
 
 def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | None) -> WheelSource:
@@ -126,7 +126,8 @@ def wheel_source(topic: Topic, topic_map: Mapping[str, Any], radius_m: float | N
         f"{', '.join(right)} (right) in {unit}{_left_out(dead)}",
         unit,
         stated,
-        joints and is_speed and not {"unit", "values"} & set(topic_map),
+        "values" in topic_map,
+        "unit" in topic_map,
     )
 
 
