@@ -50,6 +50,7 @@ from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from odometry.checks.treads.blocked_turns import blocked_turns
 from odometry.checks.treads.equal_in_turns import equal_in_turns
 from odometry.checks.treads.one_motion import one_motion
+from odometry.checks.treads.opposed import opposed
 from odometry.checks.treads.proportion import proportion
 from odometry.checks.treads.scale_change import scale_change
 from odometry.checks.treads.sides import sides
@@ -100,6 +101,7 @@ CHECKS: tuple[Check, ...] = (
     sides,
     proportion,
     tread_motion,
+    opposed,
     blocked_turns,
     tread_samples,
     treads,

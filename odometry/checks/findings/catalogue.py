@@ -38,6 +38,7 @@ CATALOGUE: dict[str, str] = {
     "tread_left_reversed": "left tread with the wrong sign",
     "tread_right_reversed": "right tread with the wrong sign",
     "treads_or_gyroscope_reversed": "treads and gyroscope turn opposite ways, no poses",
+    "treads_opposed": "treads that turn against one another, with no gyroscope and no poses",
     "treads_unequal": "one side has another scale",
     "straight_drives": "one side has another scale, or the robot pulls to one side",
     "tread_offset": "one tread reads a constant besides its speed",
