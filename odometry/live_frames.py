@@ -31,8 +31,9 @@ class LiveFrames:
     ----------
     too_late : int
         Messages that were dropped: older than a frame that was given, repeated, without a
-        finite stamp, tread speed or yaw rate, or alone more than 5 s ahead of the others. Where
-        it grows, clocks do not agree or went back, or a driver gives no numbers.
+        finite stamp, tread speed or yaw rate, with an infinite number, or alone more than 5 s
+        ahead of the others. Where it grows, clocks do not agree or went back, or a driver gives
+        no numbers.
 
     Notes
     -----
@@ -81,11 +82,11 @@ class LiveFrames:
 
     def pose(self, stamp_s: float, x: float, y: float, yaw: float = math.nan) -> None:
         """A measured pose in the reference frame [m, rad]; NaN for what was not measured."""
-        self._add(stamp_s, "pose", np.array([x, y, yaw], dtype=np.float64))
+        self._add(stamp_s, "pose", self._measured(x, y, yaw))
 
     def velocity(self, stamp_s: float, v_x: float, v_y: float, omega: float) -> None:
         """A measured body twist [m/s, rad/s]; NaN for what was not measured."""
-        self._add(stamp_s, "velocity", np.array([v_x, v_y, omega], dtype=np.float64))
+        self._add(stamp_s, "velocity", self._measured(v_x, v_y, omega))
 
     def image(self, stamp_s: float, pixels: ByteImage) -> None:
         """An image, (H, W) grey or (H, W, 3) in RGB order."""
@@ -102,6 +103,13 @@ class LiveFrames:
     def rest(self) -> list[Frame]:
         """All frames that are left, where no message will come any more."""
         return self._until(self._clock_s + AHEAD_S)
+
+    def _measured(self, *values: float) -> FloatArray:
+        """Values (3,), NaN in place of an infinite one, which is counted."""
+        found = np.array(values, dtype=np.float64)
+        infinite = np.isinf(found)
+        self.too_late += bool(infinite.any())
+        return np.where(infinite, math.nan, found)
 
     def _add(self, stamp_s: float, name: str, value: FloatArray | ByteImage) -> None:
         parts = self._parts.get(stamp_s, {})

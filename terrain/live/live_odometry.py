@@ -1,9 +1,10 @@
 """The main job frame by frame, as on a robot."""
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from odometry.errors import ConfigError, EstimationError
 from odometry.estimation.icr_ekf import IcrEkf
@@ -16,11 +17,10 @@ from odometry.run import UNKNOWN, Robot
 from odometry.running_odometer import RunningOdometer
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera.camera import Camera
-from terrain.classification.answer import COLOURLESS, ONE_CHANNEL, colourless_note
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.likeness import Likeness
 from terrain.config import Config
-from terrain.image_labels.image_labeller import OTHER_SIZE
+from terrain.live.images_so_far import ImagesSoFar
 from terrain.live.live_feel import LiveFelt
 from terrain.live.live_source import live_feel, live_source
 from terrain.live.live_step import LiveStep
@@ -32,8 +32,6 @@ from terrain.terrain_names import name_notes
 
 if TYPE_CHECKING:
     from odometry.estimation.estimate import Estimate
-
-NOTED = {OTHER_SIZE, COLOURLESS, ONE_CHANNEL}
 
 
 class LiveOdometry:
@@ -132,8 +130,7 @@ class LiveOdometry:
         self._gaps, self._noticed = GapsSoFar(), NoticedSoFar()
         self._track_width_m = robot.track_width
         self._lost_s, self._lost_until_s = 0.0, 0.0
-        self._images, self._unnamed = 0, Counter[str]()
-        self._image_size = (0, 0) if camera is None else camera.image_size
+        self._images = ImagesSoFar((0, 0) if camera is None else camera.image_size)
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
 
@@ -166,8 +163,9 @@ class LiveOdometry:
         """What to know before the answers are used; some can be said after several images only.
 
         Terrains that the parameter set lacks, images unlike the training photographs, of another
-        size than the camera's or grey before a model in colour, `feel_note`, time without tread
-        speeds, and what the filter noticed that misleads it, the latest of each kind.
+        size than the camera's, grey before a model in colour or all without a name, `feel_note`,
+        time without tread speeds, and what the filter noticed that misleads it, the latest of each
+        kind.
         """
         likeness = None if self.likeness is None else self.likeness.note
         lost = (
@@ -175,14 +173,7 @@ class LiveOdometry:
             f"time until {self._lost_until_s:.2f} s: messages were lost, or the clock was set. "
             "Where the robot went meanwhile is not known, and the odometer is off by it"
         )
-        width, height = self._image_size
-        of_other_size = self._unnamed[OTHER_SIZE]
-        odd = (
-            f"{of_other_size} image(s) are not of the camera's size, {width} x {height} "
-            "pixels, and have no label: see image_size of [camera]"
-        )
-        of_images = odd if of_other_size else "", colourless_note(self._unnamed, self._images)
-        said = likeness, *of_images, self.feel_note, lost if self._lost_s else ""
+        said = likeness, *self._images.notes(), self.feel_note, lost if self._lost_s else ""
         noticed = self._noticed.notes(self._estimate, self._track_width_m) if self._estimate else ()
         return tuple(filter(None, (*self._name_notes, *said, *noticed)))
 
@@ -192,13 +183,15 @@ class LiveOdometry:
         Raises
         ------
         EstimationError
-            If the frame is older than the one before; nothing is changed then.
+            If the frame is older than the one before, or holds an infinite number; nothing is
+            changed then.
         """
         if self._estimate is not None and not frame.stamp_s >= self._estimate.stamp_s:
             raise EstimationError(
                 f"a frame of {frame.stamp_s} s came after that of {self._estimate.stamp_s} s; "
                 "expected frames in order of time, as LiveFrames gives them"
             )
+        _check_finite(frame)
         if self._felt is not None:
             self._felt.before(frame)
         if self._estimate is None and not can_start(frame, at_pose=self._at_pose):
@@ -208,7 +201,7 @@ class LiveOdometry:
             self._estimate = started(self._ekf, self._source, frame)
             self._odometer = RunningOdometer(self._estimate)
         else:
-            if frame.in_gap:
+            if frame.in_gap or np.isnan(self._estimate.tread_speeds_m_s).any():
                 self._lost_s += frame.stamp_s - self._estimate.stamp_s
                 self._lost_until_s = frame.stamp_s
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
@@ -219,8 +212,7 @@ class LiveOdometry:
         if self._watcher is not None:
             seen = self._watcher.image_labels[-1] if frame.image is not None else None
             if seen is not None:
-                self._images += 1
-                self._unnamed.update({seen.reason} & NOTED)
+                self._images.add(seen)
             event = self._watcher.event
         if self._felt is None:
             return LiveStep(self._estimate, *odometer, terrain, seen, event)
@@ -234,3 +226,14 @@ class LiveOdometry:
         None where images are not used, or the model holds no comparison; `Likeness.note` has words.
         """
         return None if self._watcher is None else self._watcher.seen.likeness
+
+
+def _check_finite(frame: Frame) -> None:
+    """Raise EstimationError where a frame holds an infinite number."""
+    for name in ("tread_speeds_m_s", "yaw_rate_rad_s", "pose", "velocity"):
+        value = getattr(frame, name)
+        if value is not None and np.isinf(value).any():
+            raise EstimationError(
+                f"the frame of {frame.stamp_s} s has {name} = {value}; expected numbers, or NaN "
+                "for what was not measured"
+            )

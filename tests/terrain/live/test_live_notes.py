@@ -107,6 +107,21 @@ def test_grey_images_before_a_model_in_colour_have_one_note(channels, across_run
     assert note.startswith(f"{images} of {images} images have no name, since they are grey")
 
 
+def test_images_that_all_lack_a_name_are_noted_with_the_reason(across_run, classifier):
+    """Such as files that a camera driver did not write."""
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live = LiveOdometry(run.robot, camera=camera, model=classifier)
+    images = 0
+    for frame in run.frames():
+        live.step(replace(frame, image=frame.image and frame.image.with_name("none.jpg")))
+        images += frame.image is not None
+        found = [note for note in live.notes if note.startswith(f"no image of {images} so far")]
+        assert len(found) == (images >= 20)
+    assert images >= 20
+    assert "the image cannot be read" in found[0]
+
+
 def test_time_without_tread_speeds_is_noted():
     live = LiveOdometry(Robot(0.5))
     stamps_s = [*np.arange(0, 3, 0.1), *np.arange(9, 11, 0.1)]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import EstimationError
 from odometry.frames import Frame
 from odometry.live_frames import LiveFrames
 from odometry.run import Robot
@@ -88,6 +89,44 @@ def test_a_gyroscope_that_fell_silent_is_said_until_it_speaks_again():
             said.append(frame.stamp_s)
     assert said[0] == pytest.approx(6.0, abs=0.15)
     assert said[-1] == pytest.approx(12.0, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("tread_speeds_m_s", np.array([np.inf, 0.5])),
+        ("yaw_rate_rad_s", -np.inf),
+        ("pose", np.array([0.0, np.inf, 0.0])),
+        ("velocity", np.array([np.inf, 0.0, 0.0])),
+    ],
+)
+def test_a_frame_with_an_infinite_number_is_refused_and_changes_nothing(name, value):
+    live, other = LiveOdometry(Robot(TRACK_M)), LiveOdometry(Robot(TRACK_M))
+    for frame, _ in drive(2.0):
+        with pytest.raises(EstimationError, match=f"{name} = "):
+            live.step(replace(frame, **{name: value}))
+        step, expected = live.step(frame), other.step(frame)
+    np.testing.assert_array_equal(step.estimate.mean, expected.estimate.mean)
+
+
+def test_infinite_numbers_of_poses_and_velocities_count_as_not_measured():
+    frames = LiveFrames(wait_s=0.0, has_gyroscope=False)
+    frames.treads(0.0, 0.5, 0.5)
+    frames.pose(0.0, np.inf, 1.0, 0.2)
+    frames.velocity(0.0, 0.5, np.nan, -np.inf)
+    (frame,) = frames.rest()
+    np.testing.assert_array_equal(frame.pose, [np.nan, 1.0, 0.2])
+    np.testing.assert_array_equal(frame.velocity, [0.5, np.nan, np.nan])
+    assert frames.too_late == 2
+
+
+def test_tread_speeds_that_a_frame_does_not_know_are_noted():
+    live = LiveOdometry(Robot(TRACK_M))
+    for frame, _ in drive(10.0):
+        lost = 4 < frame.stamp_s < 6
+        live.step(replace(frame, tread_speeds_m_s=np.full(2, np.nan)) if lost else frame)
+    (note,) = live.notes
+    assert note.startswith("no tread speeds came for 2.0 s in all")
 
 
 @pytest.mark.parametrize("speed_m_s", [np.nan, np.inf])
