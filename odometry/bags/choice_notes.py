@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from odometry.bags.message_fields import FIX, ODOMETRY, TWISTS
+from odometry.bags.message_fields import FIX, ODOMETRY, POSES, TWISTS
 from odometry.bags.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no_wheels_move
+from odometry.bags.pose_rows import turns
 from odometry.bags.robot_messages import RobotMessages
 from odometry.bags.topic import Topic
 from odometry.bags.topic_guess import candidates
@@ -18,7 +19,22 @@ def wheel_notes(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken
     topic = topics[taken]
     if topic.message_type not in TWISTS:
         return []
-    kind = kind_of(topic)
+    return [*_separation(taken, topic_map), *_kind_notes(topic, topic_map)]
+
+
+def _separation(taken: str, topic_map: Mapping[str, Any]) -> list[str]:
+    """By which number turns of a twist become tread speeds."""
+    if "separation" in topic_map:
+        return []
+    return [
+        f"wheel speeds: {taken}: separation is taken to be the track width. Controllers often "
+        "multiply it (wheel_separation_multiplier): then speeds of the sides, and with them all "
+        "ICRs, are wrong by that factor; give separation, multiplied, in [wheels] of a map"
+    ]
+
+
+def _kind_notes(topic: Topic, topic_map: Mapping[str, Any]) -> list[str]:
+    taken, kind = topic.name, kind_of(topic)
     if not kind.of_wheels:
         return [
             f"wheel speeds: {taken} looks like {kind.name} by {kind.sign}, which shows no slip of "
@@ -40,8 +56,23 @@ def wheel_notes(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken
 def reference_notes(
     topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str
 ) -> list[str]:
-    """What is to be said of odometry that was guessed to be the reference."""
-    if not taken or "topic" in topic_map or topics[taken].message_type != ODOMETRY:
+    """What is to be said of poses that are the reference."""
+    if not taken:
+        return []
+    return [*_without_yaw(topics[taken]), *_drifts(topics, topic_map, taken)]
+
+
+def _without_yaw(topic: Topic) -> list[str]:
+    if topic.message_type not in POSES or turns(topic):
+        return []
+    return [
+        f"reference: {topic.name}: its orientation never changes, as one that is not filled in: "
+        "yaw is left empty, positions alone are used"
+    ]
+
+
+def _drifts(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str) -> list[str]:
+    if "topic" in topic_map or topics[taken].message_type != ODOMETRY:
         return []
     kind = kind_of(topics[taken])
     if kind.name == TRUTH:

@@ -11,6 +11,9 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.bags.message_fields import POSES
+from odometry.bags.topic import PLACE, Topic, moved
+from odometry.bags.transforms import plain_frame
+from odometry.errors import BagError
 from odometry.geometry import se3
 from odometry.io.files import naming_temporary
 
@@ -112,11 +115,24 @@ Row = tuple[float, ...]
 POSE_COLUMNS = ("x", "y", "yaw", "z", "roll", "pitch")
 
 
-def pose_reader(message_type: str) -> Callable[[Any], Row]:
-    """A function that takes x, y, z, qw, qx, qy, qz out of a message."""
-    pose_of = POSES[message_type]
+def turns(topic: Topic) -> bool:
+    """Whether poses have an orientation: one that never changes while they move is none."""
+    moves = any(moved(topic.ranges, PLACE, axis) for axis in "xy")
+    return not moves or any(moved(topic.ranges, PLACE, f"orientation.{a}") for a in "wxyz")
+
+
+def pose_reader(topic: Topic) -> Callable[[Any], Row]:
+    """A function that takes x, y, z, qw, qx, qy, qz out of a message.
+
+    It raises BagError where a pose is in another frame than most.
+    """
+    pose_of = POSES[topic.message_type]
+    world = topic.worlds[0] if topic.worlds else ""
 
     def read(message: Any) -> Row:
+        found = plain_frame(message.header.frame_id)
+        if found != world:
+            raise BagError(f"a pose in the frame {found!r}, where most are in {world!r}")
         pose = pose_of(message)
         if hasattr(pose, "translation"):
             place, turn = pose.translation, pose.rotation
@@ -133,12 +149,15 @@ class AttitudesOf:
     The place stays that of the frame's origin: its place on the robot goes to [sensors] pose.
     """
 
-    def __init__(self, robot_from_body: FloatArray) -> None:
+    def __init__(self, robot_from_body: FloatArray, *, measured: bool = True) -> None:
+        """Without `measured` attitudes are left out."""
         self._body_from_robot = robot_from_body[:3, :3].T
+        self._measured = measured
 
     def __call__(self, stamps_ns: IntArray, rows: FloatArray) -> tuple[IntArray, FloatArray]:
         """Columns (N, 6) as POSE_COLUMNS of rows (N, 7); no attitude where there is none."""
         rotations, valid = rotations_of(rows[:, 3:])
+        valid &= self._measured
         roll, pitch, yaw = se3.roll_pitch_yaw(rotations @ self._body_from_robot).T
         angles = np.where(valid, np.stack([yaw, roll, pitch]) + 0.0, np.nan)  # -0 becomes 0
         x, y, z = np.where(np.isfinite(rows[:, :3]).all(axis=1), rows[:, :3].T, np.nan)

@@ -24,6 +24,7 @@ from odometry.bags.pose_rows import (
     point_row,
     pose_reader,
     positions_alone,
+    turns,
 )
 from odometry.bags.speeds import TreadSpeeds, row_reader
 from odometry.bags.streams import Consumer, Images, Rows, Stream, TransformRows
@@ -128,12 +129,13 @@ def _reference(plan: Plan, survey: Survey, folder: Path, local: LocalMetres) -> 
         return Rows(topic.name, "pose.csv", rows, point_row, by_header=plan.by_header)
     frame = plan.frames.get(topic.name, "")
     pose = plan.robot.pose_of(frame, survey.robot)
-    turned = AttitudesOf(np.eye(4) if pose is None else pose)
+    measured = topic.message_type in TRANSFORM_LISTS or turns(topic)
+    turned = AttitudesOf(np.eye(4) if pose is None else pose, measured=measured)
     rows = OrderedRows(file, POSE_COLUMNS, turned, 2)
     if topic.message_type in TRANSFORM_LISTS:
         poses = TransformPoses(plan.world, frame, survey.robot.fixed)
         return TransformRows(topic.name, "pose.csv", rows, poses, by_header=plan.by_header)
-    read = pose_reader(topic.message_type)
+    read = pose_reader(topic)
     return Rows(topic.name, "pose.csv", rows, read, by_header=plan.by_header)
 
 
@@ -145,7 +147,7 @@ def _other(name: str, plan: Plan, survey: Survey, folder: Path) -> Stream:
     file = f"{OTHER}/{_plain(name)}{f'_{again + 1}' if again else ''}.csv"
     columns = PosesOfRobot(np.eye(4) if pose is None else pose)
     rows = OrderedRows(folder / file, ("x", "y", "yaw"), columns, 3)
-    return Rows(name, file, rows, pose_reader(topic.message_type), by_header=plan.by_header)
+    return Rows(name, file, rows, pose_reader(topic), by_header=plan.by_header)
 
 
 def _plain(topic: str) -> str:

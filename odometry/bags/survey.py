@@ -1,5 +1,6 @@
 """What bags hold: topics, frames of the robot, what cannot be read."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
@@ -8,10 +9,11 @@ from typing import Any
 
 from odometry.bags.bag_files import BagFile
 from odometry.bags.damage import Losses
-from odometry.bags.message_fields import FIX, IMAGES, JOINTS, body_frame
+from odometry.bags.message_fields import FIX, IMAGES, JOINTS, POSES, body_frame
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
 from odometry.bags.topic import MOVING_TYPES, Connection, Message, Ranges, Topic, header_ns, widen
+from odometry.bags.transforms import plain_frame
 from odometry.bags.wheel_names import sided
 from odometry.errors import BagError
 
@@ -32,6 +34,7 @@ class Tally:
         self.clock_back_s, self._latest = 0.0, (0, 0)
         self.problem = ""
         self.frames: dict[str, None] = {}
+        self.worlds = Counter[str]()
         self.joints: dict[str, None] = {}
         self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
@@ -53,10 +56,7 @@ class Tally:
             robot.add(message, content)
         if self.tells_motion:
             widen(self.ranges, content)
-        if self.connection.message_type == FIX:
-            self.frames[body_frame(content)] = None
-        if self.connection.message_type == JOINTS:
-            self.joints.update(dict.fromkeys(content.name))
+        self._name(content)
         stamp_ns = header_ns(content)
         if stamp_ns:
             self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
@@ -67,6 +67,16 @@ class Tally:
         if self.sample is None or self._tells_more(content):
             image = self.connection.message_type in IMAGES
             self.sample = _without_pixels(content) if image else content
+
+    def _name(self, content: Any) -> None:
+        """Take in the frames and joints that a message names."""
+        kind = self.connection.message_type
+        if kind in POSES:
+            self.worlds[plain_frame(content.header.frame_id)] += 1
+        if kind == FIX:
+            self.frames[body_frame(content)] = None
+        if kind == JOINTS:
+            self.joints.update(dict.fromkeys(content.name))
 
     def _looks(self) -> bool:
         """The first messages, then fewer and fewer; of those with motion a fixed share."""
@@ -92,6 +102,7 @@ class Tally:
             self.ranges,
             self.problem if self.sample is None else "",
             tuple(self.frames),
+            tuple(world for world, _ in self.worlds.most_common()),
             tuple(self.joints),
             self.clock_back_s,
         )

@@ -55,12 +55,17 @@ MOVING_TYPES = (
     "nav_msgs/msg/Odometry",
     "sensor_msgs/msg/NavSatFix",
     "sensor_msgs/msg/Imu",
+    "geometry_msgs/msg/TwistStamped",
+    "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "geometry_msgs/msg/PoseStamped",
+    "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "geometry_msgs/msg/TransformStamped",
 )
 Ranges = dict[tuple[str, str], tuple[float, float]]
 
 
 def widen(ranges: Ranges, message: Any) -> None:
-    """Widen the ranges of velocities and places by a joint state, odometry or fix."""
+    """Widen the ranges of velocities and places by a message of MOVING_TYPES."""
     for kind, name, value in _values(message):
         if math.isfinite(value):
             least, most = ranges.get((kind, name), (value, value))
@@ -80,14 +85,8 @@ def farthest(ranges: Ranges, kind: str, names: Iterable[str]) -> float:
 
 
 def _values(message: Any) -> Iterator[tuple[str, str, float]]:
-    if hasattr(message, "twist"):
-        twist, place = message.twist.twist, message.pose.pose.position
-        yield VELOCITY, "ahead", twist.linear.x
-        yield VELOCITY, "side", twist.linear.y
-        yield VELOCITY, "turn", twist.angular.z
-        yield PLACE, "x", place.x
-        yield PLACE, "y", place.y
-        yield PLACE, "z", place.z
+    if any(hasattr(message, part) for part in ("twist", "pose", "transform")):
+        yield from _posed(message)
         return
     if hasattr(message, "angular_velocity"):
         yield from _inertial(message)
@@ -101,6 +100,25 @@ def _values(message: Any) -> Iterator[tuple[str, str, float]]:
         yield VELOCITY, name, float(value)
     for name, value in zip(message.name, message.position, strict=False):
         yield PLACE, name, float(value)
+
+
+def _posed(message: Any) -> Iterator[tuple[str, str, float]]:
+    """Of odometry, a twist, a pose or a transform; with a covariance they lie one deeper."""
+    if hasattr(message, "twist"):
+        twist = getattr(message.twist, "twist", message.twist)
+        yield VELOCITY, "ahead", twist.linear.x
+        yield VELOCITY, "side", twist.linear.y
+        yield VELOCITY, "turn", twist.angular.z
+    pose = getattr(message, "pose", getattr(message, "transform", None))
+    if pose is None:
+        return
+    pose = getattr(pose, "pose", pose)
+    at = pose.position if hasattr(pose, "position") else pose.translation
+    turn = pose.orientation if hasattr(pose, "orientation") else pose.rotation
+    for axis in "xyz":
+        yield PLACE, axis, getattr(at, axis)
+    for axis in "wxyz":
+        yield PLACE, f"orientation.{axis}", getattr(turn, axis)
 
 
 def _inertial(message: Any) -> Iterator[tuple[str, str, float]]:
@@ -137,6 +155,8 @@ class Topic:
         Why it cannot be read; empty where it can.
     frames : tuple of str
         Frames that its satellite fixes name: of several receivers there are several.
+    worlds : tuple of str
+        Frames in which its poses are, that of most messages first.
     joints : tuple of str
         Names of joints in all messages that were looked at.
     """
@@ -151,6 +171,7 @@ class Topic:
     ranges: Ranges = field(default_factory=dict)
     problem: str = ""
     frames: tuple[str, ...] = ()
+    worlds: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
     clock_back_s: float = 0.0
 

@@ -140,6 +140,12 @@ def _twist(topic: Topic, topic_map: Mapping[str, Any]) -> WheelSource:
         said == "position"
         or (said is None and (zero or of_world) and moved(topic.ranges, PLACE, "x"))
     )
+    if of_world and not by_pose and said is None:
+        raise BagError(
+            f"{topic.name}: its twist goes sideways by up to {side:.2g} m/s (ahead {ahead:.2g}), "
+            "as one in the world's axes does, and no wheels. Name other ones with --wheels, or "
+            'write values = "velocity" in [wheels] of a map if x is ahead all the same'
+        )
     what = "differences of its poses" if by_pose else "its twist"
     if by_pose and of_world and not zero:
         what += " (its twist goes sideways, as one in the world's axes does)"
