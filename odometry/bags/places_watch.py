@@ -15,7 +15,7 @@ from odometry.errors import BagError
 
 SPAN_S = 0.5  # over which both are summed
 LONGEST_S = 0.5  # between two messages; longer ones are a gap
-MOST_SPANS = 8192  # an hour; later ones are left out
+BLOCK, MOST_BLOCKS = 1024, 200  # of messages: an hour at 50 Hz; later ones are left out
 LEAST_SPANS = 20  # in which the wheels turn by a fifth of what they turn in a fast one, or more
 TURNS, FAST_QUANTILE = 0.2, 0.9
 LARGEST_STEP = math.pi  # rad between messages: angles that wrap, or an encoder that was reset
@@ -31,43 +31,50 @@ class PlacesWatch(Consumer):
         super().__init__(source.topic)
         self._wheels = source.left + source.right
         self._radius_m = radius_m
-        self._last: tuple[float, FloatArray, FloatArray] | None = None
-        self._lasts_s = 0.0
-        self._ways = np.zeros((2, len(self._wheels)))  # by velocities, by positions
-        self._spans: list[FloatArray] = []
+        self._names: list[str] = []  # of the latest message, and where the wheels are among them
+        self._at: list[int] = []
+        self._rows: list[list[float]] = []  # stamp, positions, velocities
+        self._spans: list[FloatArray] = []  # ways by velocities and by positions (2, n, k)
         self._whole = True
 
     def take(self, message: Message, content: Any) -> None:
         """Take in a JointState; one without both numbers of all wheels is left out."""
-        names = list(content.name)
-        both = min(len(content.position), len(content.velocity)) >= len(names)
-        if both and set(self._wheels) <= set(names) and len(self._spans) < MOST_SPANS:
-            at = [names.index(wheel) for wheel in self._wheels]
-            stamp_s = (header_ns(content) or message.received_ns) / 1e9
-            places, speeds = (np.array(of)[at] for of in (content.position, content.velocity))
-            self._add(stamp_s, places, speeds)
+        if content.name != self._names:
+            self._names = list(content.name)
+            there = set(self._wheels) <= set(self._names)
+            self._at = [self._names.index(wheel) for wheel in self._wheels] if there else []
+        places, speeds = content.position, content.velocity
+        both = min(len(places), len(speeds)) >= len(self._names)
+        if self._at and both and len(self._spans) < MOST_BLOCKS:
+            row = [(header_ns(content) or message.received_ns) / 1e9]
+            row += [places[k] for k in self._at]
+            row += [speeds[k] for k in self._at]
+            self._rows.append(row)
+            if len(self._rows) == BLOCK:
+                self._sum()
 
-    def _add(self, stamp_s: float, places: FloatArray, speeds: FloatArray) -> None:
+    def _sum(self) -> None:
+        """Sum the rows over spans; the last row begins the next ones."""
+        stamps_s, values = np.split(np.array(self._rows), [1], axis=1)
+        self._rows = self._rows[-1:]
+        places, speeds = np.split(values, 2, axis=1)
         self._whole = self._whole and bool(np.all(places == np.rint(places)))
-        last, self._last = self._last, (stamp_s, places, speeds)
-        if last is None:
-            return
-        lasts_s, steps = stamp_s - last[0], places - last[1]
-        if not 0 < lasts_s < LONGEST_S or not np.abs(steps).max() < LARGEST_STEP:
-            self._lasts_s, self._ways = 0.0, np.zeros_like(self._ways)
-            return
-        self._lasts_s += lasts_s
-        self._ways = self._ways + np.stack([lasts_s * (speeds + last[2]) / 2, steps])
-        if self._lasts_s >= SPAN_S:
-            self._spans.append(self._ways)
-            self._lasts_s, self._ways = 0.0, np.zeros_like(self._ways)
+        lasts_s, steps = np.diff(stamps_s, axis=0), np.diff(places, axis=0)
+        ways = np.stack([lasts_s * (speeds[1:] + speeds[:-1]) / 2, steps])
+        lasts = (lasts_s > 0) & (lasts_s < LONGEST_S) & (np.abs(steps) < LARGEST_STEP)
+        ways[:, ~lasts.all(axis=1)] = np.nan
+        if ways.shape[1]:
+            begins = np.unique(stamps_s[1:, 0] // SPAN_S, return_index=True)[1]
+            self._spans.append(np.add.reduceat(ways, np.sort(begins), axis=1))
 
     def check(self) -> None:
         """Raise BagError where velocities and positions surely have different units or signs."""
+        if self._rows:
+            self._sum()
         if self._whole or not self._spans:  # ticks of an encoder are no rad
             return
-        ways = np.stack(self._spans)
-        ratios = {name: _ratio(*ways[:, :, k].T) for k, name in enumerate(self._wheels)}
+        ways = np.concatenate(self._spans, axis=1)
+        ratios = {name: _ratio(*ways[:, :, k]) for k, name in enumerate(self._wheels)}
         odd = {name: of for name, of in ratios.items() if not (1 / AGREE < of < AGREE)}
         odd = {name: of for name, of in odd.items() if not math.isnan(of)}
         if not odd:
