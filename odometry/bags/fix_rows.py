@@ -5,12 +5,17 @@ from typing import Any
 
 import numpy as np
 
-from odometry.bags.message_fields import body_frame
+from odometry.bags.message_fields import check_frame
 from odometry.bags.topic import PLACE, Topic, farthest
 from odometry.errors import BagError
 from odometry.fixes.local_metres import on_earth, zeros_within_deg
 
 Row = tuple[float, ...]
+
+
+def sensor_frame(topic: Topic, said: str) -> str:
+    """The frame of the one of several sensors on a topic that is taken: as said, else of most."""
+    return said if said in topic.frames else topic.frames[0]
 
 
 def fix_reader(topic: Topic, antenna: str) -> Callable[[Any], Row]:
@@ -19,7 +24,7 @@ def fix_reader(topic: Topic, antenna: str) -> Callable[[Any], Row]:
     It raises BagError where there was no fix (the message says so, or has no numbers, or zeros
     that are no place), and where it is of another antenna than the one of this frame.
     """
-    taken = antenna if antenna in topic.frames else body_frame(topic.sample)
+    taken = sensor_frame(topic, antenna)
     zeros_deg = zeros_within_deg(farthest(topic.ranges, PLACE, ["latitude", "longitude"]))
 
     def read(message: Any) -> Row:
@@ -30,11 +35,7 @@ def fix_reader(topic: Topic, antenna: str) -> Callable[[Any], Row]:
             raise BagError("no fix (latitude and longitude are zero)")
         if not on_earth(place[None])[0]:
             raise BagError("no place on Earth (latitude beyond 90 degrees)")
-        if (frame := body_frame(message)) != taken:
-            raise BagError(
-                f"of {frame or 'no frame'}, another receiver on this topic; {taken or 'no frame'} "
-                "is taken (frame of [reference] in a map says which)"
-            )
+        check_frame(message, taken, "receiver", "reference")
         return message.latitude, message.longitude, message.altitude
 
     return read

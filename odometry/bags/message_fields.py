@@ -52,6 +52,15 @@ def body_frame(message: Any) -> str:
     return str(getattr(getattr(message, "header", None), "frame_id", "")).lstrip("/")
 
 
+def check_frame(message: Any, taken: str, what: str, table: str) -> None:
+    """Raise BagError where a message is of another sensor on a topic than the one of a frame."""
+    if (frame := body_frame(message)) != taken:
+        raise BagError(
+            f"of {frame or 'no frame'}, another {what} on this topic; {taken or 'no frame'} is "
+            f"taken (frame of [{table}] in a map says which)"
+        )
+
+
 STEP = re.compile(r"([A-Za-z_]\w*)|\[(-?\d+)\]")
 DEEPEST, LONGEST_ARRAY = 4, 16  # limits of the search for numbers
 

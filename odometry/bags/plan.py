@@ -174,8 +174,9 @@ def _world(topics: Mapping[str, Topic], topic_map: TopicMap, reference: str, sur
 
 def _frame_of(topic: Topic, robot: RobotFrame) -> str:
     """The frame that a topic describes; for a list of transforms that of the robot."""
-    lists = topic.message_type in TRANSFORM_LISTS
-    return robot.base if lists else body_frame(topic.sample)
+    if topic.message_type in TRANSFORM_LISTS:
+        return robot.base
+    return topic.frames[0] if topic.frames else body_frame(topic.sample)
 
 
 def _no_reference(

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.bags.fix_rows import fix_reader
+from odometry.bags.fix_rows import fix_reader, sensor_frame
 from odometry.bags.image_files import ImageFiles
 from odometry.bags.imu_fields import FORCE, RATE, measures
 from odometry.bags.lens_watch import LensWatch
-from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame
+from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame, check_frame
 from odometry.bags.ordered_rows import OrderedRows
 from odometry.bags.places_watch import PlacesWatch
 from odometry.bags.plan import Plan
@@ -93,12 +93,14 @@ def _wheels(plan: Plan, survey: Survey, folder: Path, speeds: TreadSpeeds) -> St
 
 def _imu(plan: Plan, survey: Survey, folder: Path, attitudes: Attitudes) -> Stream:
     topic = survey.topics[plan.imu]
+    taken = sensor_frame(topic, plan.frames.get(plan.imu, ""))
     gyro, accel = measures(topic, RATE), measures(topic, FORCE)
     # REP-145: a covariance that begins with -1 says that the sensor does not measure this
     turned = topic.sample.orientation_covariance[0] != -1
     names = IMU_COLUMNS[: 3 * gyro] + IMU_COLUMNS[3 : 3 + 3 * accel]
 
     def read(message: Any) -> tuple[float, ...]:
+        check_frame(message, taken, "inertial sensor", "imu")
         rate, force, turn = (
             message.angular_velocity,
             message.linear_acceleration,

@@ -9,7 +9,7 @@ from typing import Any
 
 from odometry.bags.bag_files import BagFile
 from odometry.bags.damage import Losses
-from odometry.bags.message_fields import FIX, IMAGES, JOINTS, POSES, body_frame
+from odometry.bags.message_fields import FIX, IMAGES, IMU, JOINTS, POSES, body_frame
 from odometry.bags.message_types import MessageTypes
 from odometry.bags.robot_messages import ROBOT_TYPES, RobotMessages
 from odometry.bags.topic import MOVING_TYPES, Connection, Message, Ranges, Topic, header_ns, widen
@@ -30,11 +30,11 @@ class Tally:
         self.count, self.first_ns, self.last_ns = 0, 2**63, -1
         self.sample: Any = None
         self.offsets_s: list[float] = []
+        self.unstamped = 0  # of those that were decoded
         self.ranges: Ranges = {}
         self.clock_back_s, self._latest = 0.0, (0, 0)
         self.problem = ""
-        self.frames: dict[str, None] = {}
-        self.worlds = Counter[str]()
+        self.frames, self.worlds = Counter[str](), Counter[str]()
         self.joints: dict[str, None] = {}
         self._of_robot = connection.message_type in ROBOT_TYPES
         self.tells_motion = connection.message_type in MOVING_TYPES
@@ -58,6 +58,7 @@ class Tally:
             widen(self.ranges, content)
         self._name(content)
         stamp_ns = header_ns(content)
+        self.unstamped += not stamp_ns
         if stamp_ns:
             self.offsets_s.append((stamp_ns - message.received_ns) / 1e9)
             stamped_ns, received_ns = self._latest
@@ -73,8 +74,8 @@ class Tally:
         kind = self.connection.message_type
         if kind in POSES:
             self.worlds[plain_frame(content.header.frame_id)] += 1
-        if kind == FIX:
-            self.frames[body_frame(content)] = None
+        if kind in (FIX, IMU):
+            self.frames[body_frame(content)] += 1
         if kind == JOINTS:
             self.joints.update(dict.fromkeys(content.name))
 
@@ -101,11 +102,16 @@ class Tally:
             median(self.offsets_s) if self.offsets_s else None,
             self.ranges,
             self.problem if self.sample is None else "",
-            tuple(self.frames),
-            tuple(world for world, _ in self.worlds.most_common()),
+            _most_first(self.frames),
+            _most_first(self.worlds),
             tuple(self.joints),
             self.clock_back_s,
+            self.unstamped / max(self.unstamped + len(self.offsets_s), 1),
         )
+
+
+def _most_first(counts: Counter[str]) -> tuple[str, ...]:
+    return tuple(name for name, _ in counts.most_common())
 
 
 def _without_pixels(content: Any) -> Any:

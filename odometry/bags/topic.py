@@ -149,12 +149,15 @@ class Topic:
         Median of header stamp minus time of reception; None where there is no header stamp.
     clock_back_s : float
         By how much header stamps go back at most while messages come in.
+    unstamped : float
+        Share of its messages without a header stamp.
     ranges : Mapping
         Smallest and largest value of the motion fields, see `motion_ranges`.
     problem : str
         Why it cannot be read; empty where it can.
     frames : tuple of str
-        Frames that its satellite fixes name: of several receivers there are several.
+        Frames that its fixes, or Imu messages, name, that of most first: of several sensors there
+        are several.
     worlds : tuple of str
         Frames in which its poses are, that of most messages first.
     joints : tuple of str
@@ -174,6 +177,7 @@ class Topic:
     worlds: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
     clock_back_s: float = 0.0
+    unstamped: float = 0.0
 
     @property
     def duration_s(self) -> float:

@@ -123,6 +123,7 @@ def _expected(key: str, known: Mapping[str, Any]) -> str:
     return f"there is no such key; {meant}Known: {', '.join(filter(None, known))}"
 
 
+PARTLY = 0.05  # of the messages: the first ones, before a clock is known, are fewer
 SAME_CLOCK_S = 2.0  # header stamps and times of reception that differ by less share a clock
 
 
@@ -202,6 +203,12 @@ def clock_of(used: list[Topic], requested: str) -> tuple[bool, list[str]]:
             f"times: those of reception, as header stamps of {back.name} go back by "
             f"{back.clock_back_s:.3g} s: their clock was set, or began anew (--time header takes "
             "the stamps all the same, and drops what goes back)"
+        ]
+    partly = [one.name for one in used if PARTLY < one.unstamped < 1]
+    if partly:
+        return False, [
+            f"times: those of reception, as messages of {', '.join(partly)} have header stamps in "
+            "part only (--time header takes these for the stamps, and reception for the others)"
         ]
     unstamped = [one.name for one in used if one.header_offset_s is None]
     spread = max([*offsets, *(0.0 for _ in unstamped)]) - min([*offsets, *(0.0 for _ in unstamped)])
