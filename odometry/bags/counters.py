@@ -6,6 +6,7 @@ from odometry.arrays import FloatArray
 
 BITS = (16, 32)
 SURE = 0.75  # of the size of a counter: a smaller step may be a reset, or a true one
+FAR = 0.4  # of it: a step beyond fits the other way round nearly as well
 
 
 class Counters:
@@ -17,10 +18,12 @@ class Counters:
     ----------
     wraps : int
         Messages in which a counter wrapped.
+    far, moved : int
+        Steps, once unwrapped, of nearly half its size or more; all steps but those of zero.
     """
 
     def __init__(self) -> None:
-        self.wraps = 0
+        self.wraps = self.far = self.moved = 0
         self._bits = 0
         self._whole, self._low, self._high = True, np.inf, -np.inf
 
@@ -37,7 +40,10 @@ class Counters:
         size = 2.0**self._bits
         wrapped = np.abs(steps) > SURE * size
         self.wraps += int(np.count_nonzero(wrapped.any(axis=1)))
-        return np.where(wrapped, steps - size * np.sign(steps), steps)
+        steps = np.where(wrapped, steps - size * np.sign(steps), steps)
+        self.far += int(np.count_nonzero(np.abs(steps) > FAR * size))
+        self.moved += int(np.count_nonzero(steps))
+        return steps
 
     def notes(self, topic: str) -> list[str]:
         """What is to be said of them."""

@@ -149,12 +149,17 @@ class TreadSpeeds:
         BagError
             If the user does not state that positions are to be taken.
         """
-        if self._far < max(LEAST_FAR, FAR_SHARE * self._moving):
+        far, moving = self._far + self.counters.far, self._moving + self.counters.moved
+        if far < max(LEAST_FAR, FAR_SHARE * moving):
             return []
+        what = (
+            "a counter changes by nearly half of its size"
+            if self.counters.far
+            else ("positions within one turn change by nearly half a turn")
+        )
         said = (
-            f"positions within one turn change by nearly half a turn between two messages "
-            f"({self._far} of {self._moving} changes): whether a wheel turned by less one way "
-            "or by more the other way is not known. Record joint states more often, or velocities"
+            f"{what} between two messages ({far} of {moving} changes): whether a wheel turned by "
+            "less one way or by more the other way is not known. Record them more often, or velocities"
         )
         if self._source.values_stated:
             return [f"warning: {said}"]
