@@ -159,7 +159,7 @@ class TreadSpeeds:
         )
         said = (
             f"{what} between two messages ({far} of {moving} changes): whether a wheel turned by "
-            "less one way or by more the other way is not known. Record them more often, or velocities"
+            "less one way or by more the other is not known. Record them more often, or velocities"
         )
         if self._source.values_stated:
             return [f"warning: {said}"]
