@@ -127,8 +127,8 @@ class LiveOdometry:
         self._at_pose = at_pose
         classifier = None if self._watcher is None else self._watcher.classifier
         self._name_notes = name_notes(initial, classifier, parameters)
-        self._gaps, self._noticed = GapsSoFar(), NoticedSoFar()
-        self._track_width_m = robot.track_width
+        self._gaps = GapsSoFar()
+        self._noticed = NoticedSoFar(robot.track_width, parameters.terrains)
         self._lost_s, self._lost_until_s = 0.0, 0.0
         self._images = ImagesSoFar((0, 0) if camera is None else camera.image_size)
         self._estimate: Estimate | None = None
@@ -174,7 +174,7 @@ class LiveOdometry:
             "Where the robot went meanwhile is not known, and the odometer is off by it"
         )
         said = likeness, *self._images.notes(), self.feel_note, lost if self._lost_s else ""
-        noticed = self._noticed.notes(self._estimate, self._track_width_m) if self._estimate else ()
+        noticed = self._noticed.notes(self._estimate) if self._estimate else ()
         return tuple(filter(None, (*self._name_notes, *said, *noticed)))
 
     def step(self, frame: Frame) -> LiveStep | None:

@@ -1,6 +1,7 @@
 """What a live filter noticed of its sensors, in sentences."""
 
 import math
+from collections.abc import Collection
 
 from odometry.estimation.estimate import ALPHAS, Estimate
 from odometry.estimation.filter_event import FilterEvent
@@ -17,26 +18,41 @@ SIGMAS = 2.0
 
 
 class NoticedSoFar:
-    """Keeps the latest misleading event of each kind; memory does not grow with the events."""
+    """Keeps the latest misleading event of each kind; memory does not grow with the events.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    track_width_m : float
+    stated : collection of str
+        Terrains whose parameters the user states: an odd motion by these is no surprise.
+    """
+
+    def __init__(self, track_width_m: float, stated: Collection[str]) -> None:
+        self._track_width_m, self._stated = track_width_m, stated
+        self._odd_as_stated: dict[str, bool] = {}
         self._latest: dict[str, tuple[int, FilterEvent]] = {}
 
     def add(self, estimate: Estimate) -> None:
         """Take in the events of a step."""
+        terrain = estimate.terrain
+        if terrain in self._stated and terrain not in self._odd_as_stated:
+            self._odd_as_stated[terrain] = bool(_odd_motion(estimate, self._track_width_m))
         for event in estimate.events:
             if event.kind not in HARMLESS:
                 count, _ = self._latest.get(event.kind, (0, event))
                 self._latest[event.kind] = (count + 1, event)
 
-    def notes(self, estimate: Estimate, track_width_m: float) -> list[str]:
+    def notes(self, estimate: Estimate) -> list[str]:
         """What makes the answers doubtful up to an estimate."""
         found = dict(self._latest)
         for event in lasting_events(estimate):
             if event.kind not in HARMLESS or event.kind == SILENT_GYROSCOPE:
                 count, _ = found.get(event.kind, (0, event))
                 found[event.kind] = (count + 1, event)
-        return [*(_line(*one) for one in found.values()), *_odd_motion(estimate, track_width_m)]
+        lines = [_line(*one) for one in found.values()]
+        if self._odd_as_stated.get(estimate.terrain):
+            return lines
+        return [*lines, *_odd_motion(estimate, self._track_width_m)]
 
 
 def _line(count: int, event: FilterEvent) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from odometry.errors import EstimationError
 from odometry.frames import Frame
+from odometry.installed import shipped_data
 from odometry.live_frames import LiveFrames
 from odometry.run import Robot
 from terrain.live.live_odometry import LiveOdometry
@@ -62,6 +63,15 @@ def test_a_motion_that_no_robot_has_is_said(change, words):
     found = [note for note in notes_of(change) if note.startswith(f"the robot {words}")]
     assert len(found) == 1
     assert "run `check` on it" in found[0]
+
+
+def test_a_motion_that_the_user_states_is_no_surprise():
+    """The Warthog's printed ICRs are 9.8 track widths apart (Baril 2020, Table I)."""
+    parameters = shipped_data() / "parameters/warthog_icr.toml"
+    live = LiveOdometry(Robot(1.08), parameters=parameters, terrain="concrete")
+    for frame, _ in drive(2.0):
+        live.step(replace(frame, yaw_rate_rad_s=np.nan))
+        assert live.notes == ()
 
 
 def test_what_the_filter_noticed_is_said_once_with_its_latest_time():
