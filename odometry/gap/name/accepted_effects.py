@@ -11,6 +11,7 @@ from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_special, is_the_main_part
+from odometry.gap.name.in_calibration import is_new
 from odometry.gap.name.left_by_names import structure_left, that_last
 from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.search import Search
@@ -212,7 +213,10 @@ class Standing(Search):
             self.fitter.calibration,
         )
         measure = self.floor.measure
+        last = fit.effects[-1]
+        is_named = not isinstance(last.effect, Residual)
         reasons = [
+            is_new(last, self.fitter.calibration) if is_named else "",
             within_noise(self._at_first(held_out), self.config),
             raises_measured(self._believed_gap(), self._gap(fit), measure),
             *(

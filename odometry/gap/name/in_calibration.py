@@ -1,4 +1,4 @@
-"""Faults of the reference that the calibration runs have as well: not what is missing."""
+"""Effects that the calibration runs have as well: not what is missing."""
 
 from collections.abc import Sequence
 
@@ -38,17 +38,49 @@ def in_calibration(
     return any(_pays(Added(effect, share * added.values), calibration) for share in PARTS)
 
 
+def is_new(added: Added, calibration: Calibration) -> str:
+    """Whether the calibration runs do not show an effect as much.
+
+    They do where it surely pays there with the same values, and with more than half of them: it is
+    part of the noise floor, as what makes wheels no constant ICRs is.
+    """
+    effect = added.effect
+    if effect.course or not calibration.held_back:
+        return ""
+    known = [scene for _, scene in calibration.held_back]
+    if any(effect.lacks(scene.inputs, calibration.base) for scene in known):
+        return ""
+    whole, half = (_all_gains(_share_of(added, share), calibration) for share in (1.0, 0.5))
+    if sure_sum(whole, BEST) <= 0 or whole.sum() < half.sum():
+        return ""
+    return "the calibration runs show as much of it: it is not what is missing"
+
+
+def _share_of(added: Added, share: float) -> Added:
+    """An effect with so much of what its parameters do; those that shape it stay."""
+    absent = [
+        value if of.absent is None else of.absent
+        for of, value in zip(added.effect.parameters, added.values, strict=True)
+    ]
+    return Added(added.effect, absent + share * (added.values - absent))
+
+
 def _uneven_s(added: Added, scene: DenseWindows) -> float:
     return float(np.std(delay_s((added,), scene.pose_s, run_of(scene))))
 
 
 def _pays(added: Added, calibration: Calibration) -> bool:
-    gains = [_gains(added, base, scene, calibration.noise) for base, scene in calibration.held_back]
-    return sure_sum(np.concatenate(gains), BEST) > 0
+    return sure_sum(_all_gains(added, calibration), BEST) > 0
+
+
+def _all_gains(added: Added, calibration: Calibration) -> FloatArray:
+    """Chi-squared (P,) that an effect takes off each stretch of the calibration runs."""
+    pairs = calibration.held_back
+    return np.concatenate([_gains(added, *pair, calibration.noise) for pair in pairs])
 
 
 def _gains(added: Added, base: Base, scene: DenseWindows, noise: Noise) -> FloatArray:
-    """Chi-squared (P,) that an effect takes off each stretch of a scene."""
+    """Of one of them (P,)."""
     white = [whitening(scene, noise)]
     less, more = (whitened_residuals(base, of, [scene], white) ** 2 for of in ((), (added,)))
     _, piece = np.unique(pieces(scene, TOGETHER_S), return_inverse=True)

@@ -10,8 +10,9 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.late_by_chance import LateByChance
 from odometry.gap.config import GapConfig
 from odometry.gap.name.candidates import quick_effects
-from odometry.gap.name.in_calibration import _pays, in_calibration
+from odometry.gap.name.in_calibration import _pays, in_calibration, is_new
 from odometry.gap.prepare.scenes import scene_of
+from tests.odometry.gap.test_further import searched
 
 CONFIG = GapConfig()
 LATE = LateByChance()
@@ -88,3 +89,27 @@ def test_they_are_not_where_half_of_the_unevenness_is_theirs(known, make_scene):
     known = replace(known, held_back=kept)
     assert not _pays(Added(LATE, np.array(LATE.always)), known)
     assert in_calibration(LATE, [half_late(make_scene(3, duration_s=60.0))], known)
+
+
+@pytest.fixture
+def known_small(known):
+    """A calibration in whose runs wheels are 0.95 times as large as its bases say, too."""
+    larger = np.array([1.0, 1.0, 1.0, 1 / 0.95, 1 / 0.95])
+    kept = tuple(
+        (replace(base, values=base.values * larger), scene) for base, scene in known.held_back
+    )
+    return replace(known, held_back=kept)
+
+
+@pytest.mark.parametrize(("scale", "new"), [(0.95, False), (0.88, True), (1.05, True)])
+def test_a_name_is_new_that_the_calibration_does_not_show_as_much(known, known_small, scale, new):
+    wheels = Added(WheelScale(), np.full(2, scale))
+    assert is_new(wheels, known) == ""
+    assert (is_new(wheels, known_small) == "") == new
+
+
+def test_a_name_that_the_calibration_shows_as_much_does_not_stand(known, known_small, make_scene):
+    runs = [make_scene(seed, lambda _, twist: 0.95 * twist) for seed in (5, 6)]
+    for calibration, reason in ((known, ""), (known_small, "the calibration runs show as much")):
+        search, found = searched(calibration, *runs, WheelScale())
+        assert search._fails(found)[:33] == reason
