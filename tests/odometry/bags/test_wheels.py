@@ -120,31 +120,6 @@ def test_positions_are_differenced_where_velocities_are_not_measured(velocity, w
     assert any("differences of places" in note for note in said.notes)
 
 
-def turning(turns_a_message, tmp_path, **options):
-    """Wheels whose angles are told within one turn, while they speed up to so many turns."""
-    turned = np.cumsum(np.linspace(0, turns_a_message, 200)) * 2 * np.pi
-    bag = Bag("mcap")
-    for k, angle in enumerate((turned + np.pi) % (2 * np.pi) - np.pi):
-        bag.joints(0.2 * k, ["left_wheel", "right_wheel"], [angle, angle], [])
-    return imported(tmp_path / "run", bag.write(tmp_path / "drive"), **options)
-
-
-@pytest.mark.parametrize("turns", [0.45, 0.6, 1.2])
-def test_angles_that_change_by_half_a_turn_between_messages_stop_the_import(turns, tmp_path):
-    with pytest.raises(BagError, match="nearly half a turn between two messages"):
-        turning(turns, tmp_path)
-    (tmp_path / "again").mkdir()
-    _, said = turning(turns, tmp_path / "again", wheels__values="position")
-    assert any(note.startswith("warning: positions within one turn") for note in said.notes)
-
-
-def test_angles_that_change_by_less_than_half_a_turn_are_differenced(tmp_path):
-    run, said = turning(0.35, tmp_path)
-    expected = np.linspace(0, 0.35, 200)[1:] * 2 * np.pi * RADIUS_M / 0.2
-    np.testing.assert_allclose(run.odometry["v_left"], expected, atol=1e-6)
-    assert not any("half a turn" in note for note in said.notes)
-
-
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3", "mcap"])
 def test_a_type_of_the_bag_itself_is_read_by_its_definition(kind, tmp_path):
     inner, outer = "my_robot/msg/Drive", "my_robot/msg/Feedback"
