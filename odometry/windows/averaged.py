@@ -9,15 +9,13 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.sensors import gyroscope_of
 from odometry.windows.dense import DenseWindows
 
 LONGEST_S = 0.1  # of a step
-JUMP = 0.05  # of the fastest speed, between samples: a mean over it would smear what acts late
-FASTEST = 0.99  # quantile of the speeds
 LONGEST_SILENCE_S = 1.0  # of the gyroscope, over all of the run
 ROUNDING_S = 1e-6
 
@@ -52,9 +50,7 @@ def reported_rates(run: Run, time_s: FloatArray) -> FloatArray | None:
 
 
 def averaging_steps(inputs: Inputs, begins: IntArray) -> IntArray:
-    """First sample (S,) of each step: those given, where labels or speeds change; the last.
-
-    Speeds that change smoothly have steps of LONGEST_S; one begins where they jump.
+    """First sample (S,) of each step: those given, where labels change, between them; the last.
 
     Parameters
     ----------
@@ -67,7 +63,6 @@ def averaging_steps(inputs: Inputs, begins: IntArray) -> IntArray:
     starts = np.zeros(len(time_s), dtype=np.bool_)
     starts[[0, -1]] = True
     starts[begins] = True
-    starts[1:] |= _jumps(np.asarray(inputs.tread_speeds_m_s))
     if inputs.terrain is not None:
         starts[1:] |= inputs.terrain[1:] != inputs.terrain[:-1]
     first = np.maximum.accumulate(np.where(starts, np.arange(len(time_s)), 0))
@@ -88,13 +83,6 @@ def averaged(inputs: Inputs, steps_s: FloatArray, first: IntArray) -> Inputs:
         else:
             named[one.name] = _means(values, steps_s, first)
     return Inputs(**named)  # type: ignore[arg-type]  # each of its own field
-
-
-def _jumps(speeds_m_s: FloatArray) -> BoolArray:
-    """Whether a speed of (N, treads) jumps from a sample to the next (N - 1,)."""
-    fastest_m_s = np.quantile(np.abs(speeds_m_s).max(axis=1), FASTEST)
-    change_m_s = np.abs(np.diff(speeds_m_s, axis=0)).max(axis=1)
-    return np.asarray(change_m_s > JUMP * fastest_m_s)
 
 
 def _means(values: FloatArray, steps_s: FloatArray, first: IntArray) -> FloatArray:

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from odometry.effects.commands.held_commands import held_spans, late_speeds
 from odometry.models.inputs import Inputs
 from odometry.windows.averaged import LONGEST_S, averaged, averaging_steps
 from odometry.windows.motion import level_path
@@ -48,26 +47,3 @@ def test_a_path_of_ten_seconds_changes_by_less_than_a_millimetre(inputs):
     means = averaged(inputs, steps_s, first)
     coarse = path(means, np.append(np.diff(inputs.time_s[first]), 0.0))
     np.testing.assert_allclose(coarse[-1], path(inputs, steps_s)[-1], atol=1e-3)
-
-
-def test_commands_that_jump_are_late_as_they_are_by_samples(rng):
-    """A delay that is no multiple of the steps: what a mean smears the gyroscope would show."""
-    time_s = 0.05 * np.arange(400)
-    jumps = np.repeat(rng.uniform(-1.0, 1.0, (40, 2)), 10, axis=0)
-    inputs = Inputs(jumps, time_s=time_s)
-
-    def late_travel_m(of):
-        held_s, starts = held_spans(of.time_s)
-        late = late_speeds(of.tread_speeds_m_s, held_s, starts, 0.18)
-        travel_m = np.cumsum(late * held_s[:, None], axis=0)
-        return np.array(
-            [np.interp(time_s[:-1], of.time_s[1:], of_tread) for of_tread in travel_m[:-1].T]
-        )
-
-    first = averaging_steps(inputs, np.array([3, 101]))
-    means = averaged(inputs, np.append(np.diff(time_s), 0.05), first)
-    assert len(first) < 0.75 * len(time_s)
-    at_steps = first[1:-1]
-    np.testing.assert_allclose(
-        late_travel_m(means)[:, at_steps], late_travel_m(inputs)[:, at_steps], atol=1e-9
-    )
