@@ -43,7 +43,7 @@ mount = [0.2, 0.0, 0.55, 0.01, 0.85, 0.02]
 """
 RUN = f"""[robot]
 name = "fuzzed"
-track_width = 0.4
+track_width = 0.5
 length = 0.5
 mass = 30
 [run]
