@@ -21,6 +21,7 @@ from odometry.gap.name.verdict import (
     closes_a_part,
     closes_held_out,
     closes_the_most,
+    events_close_half,
     leaves_no_structure,
     leaves_noise,
     raises_measured,
@@ -88,8 +89,10 @@ class Standing(Search):
         structure = structure_left(self.fitter, found.fitted, self.config)
         of_gap, spread = (left, self.held_floor), self.fitter.spread(found.fitted)
         least = self._least_of_rest(found.effects)
+        in_bursts = any(one.course == InBursts.name for one in found.effects)
         reason = (
             closes_a_part(share, self.config)
+            or (events_close_half(share, self.config) if in_bursts else "")
             or closes_the_most(share, spread, of_gap, least, self.config)
             or leaves_no_structure(share, structure)
         )
