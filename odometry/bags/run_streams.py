@@ -68,7 +68,8 @@ def make_streams(
     streams: dict[str, list[Consumer]] = {}
     made: list[Consumer] = [_wheels(plan, survey, folder, learned.speeds)]
     wheels = plan.wheels
-    if wheels.kind == "joints" and wheels.speeds and not wheels.values_stated | wheels.unit_stated:
+    is_stated = wheels.values_stated or wheels.unit_stated
+    if wheels.kind == "joints" and wheels.speeds and not is_stated:
         made.append(learned.places)
     if plan.imu:
         made.append(_imu(plan, survey, folder, learned.attitudes))

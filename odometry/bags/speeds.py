@@ -152,11 +152,9 @@ class TreadSpeeds:
         far, moving = self._far + self.counters.far, self._moving + self.counters.moved
         if far < max(LEAST_FAR, FAR_SHARE * moving):
             return []
-        what = (
-            "a counter changes by nearly half of its size"
-            if self.counters.far
-            else ("positions within one turn change by nearly half a turn")
-        )
+        what = "positions within one turn change by nearly half a turn"
+        if self.counters.far:
+            what = "a counter changes by nearly half of its size"
         said = (
             f"{what} between two messages ({far} of {moving} changes): whether a wheel turned by "
             "less one way or by more the other is not known. Record them more often, or velocities"

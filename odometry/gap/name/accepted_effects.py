@@ -21,7 +21,6 @@ from odometry.gap.name.verdict import (
     closes_a_part,
     closes_held_out,
     closes_the_most,
-    events_close_half,
     leaves_no_structure,
     leaves_noise,
     raises_measured,
@@ -89,10 +88,8 @@ class Standing(Search):
         structure = structure_left(self.fitter, found.fitted, self.config)
         of_gap, spread = (left, self.held_floor), self.fitter.spread(found.fitted)
         least = self._least_of_rest(found.effects)
-        in_bursts = any(one.course == InBursts.name for one in found.effects)
         reason = (
-            closes_a_part(share, self.config)
-            or (events_close_half(share, self.config) if in_bursts else "")
+            closes_a_part(share, self._least_part(found.effects))
             or closes_the_most(share, spread, of_gap, least, self.config)
             or leaves_no_structure(share, structure)
         )
@@ -159,6 +156,11 @@ class Standing(Search):
         sudden = any(effect.course == FromAMoment.name for effect in names)
         by_contact = any(effect.slow for effect in names)
         return self.config.bursts_closed if sudden and not by_contact else self._most(names)
+
+    def _least_part(self, names: Sequence[Effect]) -> float:
+        """Held out, whatever they leave: bursts, chosen by errors, close some of anything."""
+        in_bursts = any(effect.course == InBursts.name for effect in names)
+        return self.config.least_of_rest if in_bursts else self.config.least_held_out
 
     def _believed_gap(self) -> float:
         """On the measured windows, of the base as it was calibrated."""

@@ -201,26 +201,13 @@ def leaves_no_structure(share_closed: float, predictors: Sequence[Predictor]) ->
     )
 
 
-def closes_a_part(share_closed: float, config: GapConfig) -> str:
-    """Whether names close more than a small share of the excess on held-out data."""
-    if share_closed >= config.least_held_out:
+def closes_a_part(share_closed: float, least: float) -> str:
+    """Whether names close at least a share of the excess on held-out data, whatever they leave."""
+    if share_closed >= least:
         return ""
     return (
         f"it closes {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data: what it "
         "stands for is small, or something else"
-    )
-
-
-def events_close_half(share_closed: float, config: GapConfig) -> str:
-    """Whether events close half of the excess on held-out data, whatever noise they leave.
-
-    They are chosen where errors are large, so that they close some of anything.
-    """
-    if share_closed >= config.least_of_rest:
-        return ""
-    return (
-        f"its events close {100 * max(share_closed, 0.0):.0f} % of the gap on held-out data: they "
-        "are chosen where errors are large, and close some of anything"
     )
 
 

@@ -94,10 +94,13 @@ def _turns(run: str, means: FloatArray) -> DriveTurns:
 
 
 def turn_notes(turns: Mapping[str, Sequence[DriveTurns]]) -> Iterator[str]:
-    """Sentences of terrains that hardly turn, and of drives that turn as another terrain does."""
+    """Sentences of terrains that hardly turn, and of drives that turn against their treads.
+
+    And of those that turn as another terrain does.
+    """
     determined = dict[str, list[DriveTurns]]()
     for name, of in turns.items():
-        if _sigmas(of) < LEAST_SIGMAS:
+        if max(map(_sigmas, (of, *([one] for one in of)))) < LEAST_SIGMAS:
             yield (
                 f"The runs of {name} hardly turn: by how much its treads turn the robot is not "
                 "known, and names beside it say little. Record turns to both sides, or leave it "
@@ -105,7 +108,11 @@ def turn_notes(turns: Mapping[str, Sequence[DriveTurns]]) -> Iterator[str]:
             )
             continue
         determined[name] = [one for one in of if _sigmas([one]) >= LEAST_SIGMAS]
-    found = [_contradiction(name, one, determined) for name in determined for one in turns[name]]
+    found = [
+        _reversed(name, one) or _contradiction(name, one, determined)
+        for name, of in determined.items()
+        for one in of
+    ]
     said = [words for words in found if words]
     yield from said[:MOST_NOTES]
     if len(said) > MOST_NOTES:
@@ -114,15 +121,24 @@ def turn_notes(turns: Mapping[str, Sequence[DriveTurns]]) -> Iterator[str]:
 
 def _sigmas(of: Sequence[DriveTurns]) -> float:
     """By how many standard deviations the common gain of drives differs from 0."""
-    information = sum(one.information for one in of)
-    if information <= 0:
+    turning = [one for one in of if one.information > 0]
+    information = sum(one.information for one in turning)
+    if not turning:
         return 0.0
-    gain = sum(one.gain_rad_m * one.information for one in of if one.information) / information
-    left = sum(
-        one.left + (gain - one.gain_rad_m) ** 2 * one.information for one in of if one.information
-    )
+    gain = sum(one.gain_rad_m * one.information for one in turning) / information
+    left = sum(one.left + (gain - one.gain_rad_m) ** 2 * one.information for one in turning)
     freedom = max(sum(one.blocks - 1 for one in of), 1)
-    return float(gain / np.sqrt(max(left / freedom / information, 1e-18)))
+    return abs(gain) / float(np.sqrt(max(left / freedom / information, 1e-18)))
+
+
+def _reversed(name: str, one: DriveTurns) -> str:
+    """In words, if a drive turns to the other side than its treads do."""
+    if one.gain_rad_m > 0:
+        return ""
+    return (
+        f"{one.run}, named {name}, turns the robot against its treads ({one.gain_rad_m:.3f} "
+        "rad/m): are v_left and v_right exchanged, or is the gyroscope reversed? Run `check` on it."
+    )
 
 
 def _contradiction(
@@ -130,7 +146,7 @@ def _contradiction(
 ) -> str:
     """In words, if a drive turns as one of another terrain, and unlike those of its own."""
     own = [of for of in determined[name] if of is not one]
-    if not own or one not in determined[name]:
+    if not own:
         return ""
     others = [(of, other) for other, rest in determined.items() if other != name for of in rest]
     nearest_own = min(own, key=lambda of: abs(of.gain_rad_m - one.gain_rad_m))

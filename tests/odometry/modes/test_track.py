@@ -3,21 +3,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.errors import ConfigError, ParameterError, RunFolderError
+from odometry.errors import ConfigError, RunFolderError
 from odometry.modes import velocity
-from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, BIAS_WALK_RAD2_S3, Signals
+from odometry.modes.bank_inputs import Signals
 from odometry.modes.camera_prior import SeenTerrain
 from odometry.modes.mode_set import ModeSet
 from odometry.modes.track import ModesConfig, follow_modes, follow_signals, judged_signals
 from odometry.modes.traction import TractionModes
 from odometry.modes.velocity import VelocityModes
 from tests.odometry.modes.mode_drives import (
-    integrated,
-    run_of_tables,
     table,
-    velocities,
     velocity_run,
-    wandering,
 )
 
 NAMES = ("ice", "tar")
@@ -42,18 +38,6 @@ def run():
 def followed(run):
     """Its modes, as they are followed without any setting."""
     return follow_modes(run, SET)
-
-
-@pytest.fixture(scope="module")
-def straight():
-    """Both terrains move the same when treads go together."""
-    rng, size = np.random.default_rng(4), 500
-    treads = np.repeat(wandering(rng, size, STEP_S)[:, :1], 2, axis=1)
-    true = velocities([A[0]] * size, [B[0]] * size, treads, STEP_S)
-    seen = true + SIGMA * rng.normal(size=true.shape)
-    t = STEP_S * np.arange(size)
-    odometry = {"t": t, "v_left": treads[:, 0], "v_right": treads[:, 1], "gyro_z": seen[:, 1]}
-    return run_of_tables(odometry, velocity={"t": t, "vx": seen[:, 0], "wz": seen[:, 1]})
 
 
 def without_labels(run):
@@ -180,47 +164,11 @@ def test_truth_and_labels_are_for_scoring_alone(run, followed):
         assert track.means.tobytes() == followed.means.tobytes()
 
 
-def test_a_straight_leaves_it_open(straight):
-    assert follow_modes(straight, SET).probabilities.max() < 0.9
-
-
-def test_sight_decides_what_motion_leaves_open(straight):
-    """From the place of the label on, and not before; a label of even odds changes nothing."""
-    motion = follow_modes(straight, SET).probabilities
-    for column, name in enumerate(NAMES):
-        with_camera = follow_modes(
-            straight, SET, seen=(SeenTerrain(4.0, name, 0.98),)
-        ).probabilities
-        row = round(4.0 / STEP_S)
-        np.testing.assert_array_equal(with_camera[:row], motion[:row])
-        assert (with_camera[row:, column] > motion[row:, column]).all()
-        assert (with_camera[round(8.0 / STEP_S) :, column] > 0.8).all()  # settles at 1.01 of 1.06
-    guessed = follow_modes(straight, SET, seen=(SeenTerrain(4.0, "tar", 0.5),)).probabilities
-    np.testing.assert_allclose(guessed, motion, atol=1e-12)
-
-
-def test_motion_overrides_sight_that_is_wrong(run):
+def test_motion_overrides_labels_that_are_wrong(run):
     seen = [SeenTerrain(t, "tar", 0.9) for t in (0.0, 5.0, 10.0)]
     motion, both = (follow_modes(run, SET, seen=of).probabilities[:CHANGE, 0] for of in ((), seen))
     assert (both[400:] > 0.5).mean() > 0.9
     assert (both < motion).mean() > 0.95  # the gyroscope counts, though
-
-
-def test_a_robot_that_stands_learns_from_the_camera_alone():
-    """Rates from ice to tar and back: 1/20 a second, and 0.8 more for odds of 0.9 from 2 s on."""
-    t = STEP_S * np.arange(500)
-    still = {"t": t, "v_left": 0 * t, "v_right": 0 * t, "gyro_z": 0.3 * np.sin(t)}
-    track = follow_modes(run_of_tables(still), SET, seen=(SeenTerrain(2.0, "tar", 0.9),))
-    there, back = 0.05 + 0.8, 0.05
-    settled = there / (there + back)
-    left = np.exp(-(there + back) * np.maximum(t - 2.0 + STEP_S, 0.0))
-    np.testing.assert_allclose(track.probabilities[:, 1], settled + (0.5 - settled) * left)
-    assert np.isnan(track.normalised_squared).all()
-
-
-def test_sight_of_what_is_no_mode_is_refused(run):
-    with pytest.raises(ParameterError, match="'mud'"):
-        follow_modes(run, SET, seen=(SeenTerrain(1.0, "mud", 0.9),))
 
 
 def test_a_run_without_a_yaw_rate_is_refused(run):
@@ -237,39 +185,6 @@ def test_a_robot_of_another_width_is_refused(run):
     wider = replace(SET, modes=replace(SET.modes, track_width=width * 1.3))
     with pytest.raises(RunFolderError, match=r"track width 0\.5 m; the modes are of one of 0\.65"):
         judged_signals(run, wider)
-
-
-def test_one_mode_is_a_kalman_filter():
-    """Uneven steps, inputs held from stamp to stamp, entries not measured, treads that stood."""
-    rng = np.random.default_rng(8)
-    stamps_s = np.cumsum(np.round(rng.uniform(0.01, 0.1, 60), 3))
-    treads, z = rng.normal(size=(60, 2)), rng.normal(size=(60, 2))
-    z[10], z[20, 0], z[30, 1] = np.nan, np.nan, np.nan
-    treads[40] = 0.0
-    process, noise = np.array([0.02, 0.05]), np.array([0.6, 0.5])
-    one = VelocityModes(("mud",), A[:1], B[:1], process[None], noise[None])
-    labels = np.full(60, "mud", dtype=object)
-    track = follow_signals(Signals(stamps_s, treads, z, labels), ModeSet(one, np.array([5.0])))
-    mean = np.array([treads[0].mean(), z[0, 1], 0.0])
-    P = np.diag([0.25, 0.25, BIAS_SIGMA_RAD_S**2])
-    seen = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
-    for row in range(1, 60):
-        lasts_s, u = stamps_s[row] - stamps_s[row - 1], treads[row - 1]
-        F = np.eye(3)
-        F[:2, :2] = integrated(lambda q: A[0] @ q, np.eye(2), lasts_s, 50)
-        mean[:2] = integrated(lambda q, u=u: A[0] @ q + B[0] @ u, mean[:2], lasts_s, 50)
-        P = F @ P @ F.T + lasts_s * np.diag([*process, BIAS_WALK_RAD2_S3])
-        there = np.isfinite(z[row]) & (row != 41)
-        H = seen[there]
-        S = H @ P @ H.T + np.diag(noise[there])
-        left = z[row][there] - H @ mean
-        squared = left @ np.linalg.solve(S, left) / len(H) if len(H) else np.nan
-        gain = P @ H.T @ np.linalg.inv(S)
-        mean, P = mean + gain @ left, P - gain @ H @ P
-        np.testing.assert_allclose(track.means[row], mean, atol=1e-7)
-        np.testing.assert_allclose(track.sigmas[row], np.sqrt(np.diag(P)), atol=1e-7)
-        np.testing.assert_allclose(track.normalised_squared[row], squared, rtol=1e-5)
-    assert np.isnan(track.normalised_squared[[0, 10, 41]]).all()
 
 
 @pytest.mark.slow

@@ -64,6 +64,16 @@ def test_what_differs_less_than_drives_do_is_the_same(factor, is_noted):
     assert bool(notes(*ice, *tar)) == is_noted
 
 
+@pytest.mark.parametrize("others", [1, -1])
+def test_a_drive_against_its_treads_is_noted_and_no_straight_one(others):
+    """Columns that are exchanged, in one drive of three or in all."""
+    drives = [drive("ice", 0, -1.0), drive("ice", 1, others * 1.0), drive("ice", 2, others * 1.0)]
+    found = notes(*drives, drive("tar", 3, others * 1.3), drive("tar", 4, others * 1.3))
+    assert found[0].startswith("ice_0, named ice, turns the robot against its treads (-1.0")
+    assert len(found) == (1 if others > 0 else MOST_NOTES + 1)
+    assert not any("hardly turn" in note for note in found)
+
+
 def test_terrain_that_was_driven_straight_on_is_noted():
     straight = drive("sand", 4, 1.0, turn_m_s=1e-4)
     (note,) = notes(straight, drive("ice", 0, 1.0), drive("ice", 1, 1.0))
