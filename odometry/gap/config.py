@@ -107,9 +107,8 @@ class GapConfig(SmoothConfig):
         headings reach 1.2 times and a gyroscope 1.3 on both; of 31 real ones three are beyond, of
         which positions show two.
     least_held_out : float
-        Share of the excess on held-out data that names must close. On development seeds right
-        names close 0.22 at least, a loss of traction in the place of slippery patches 0.05. In
-        bursts `least_of_rest`: right ones close 0.83 at least, slip in the place of bumps 0.21.
+        Share of the excess on held-out data that names must close, `least_of_rest` in bursts.
+        Right ones close 0.22 (0.83) or more, traction in the place of slippery patches 0.05.
     least_of_rest : float
         Share of it that names must close where they leave more than `unexplained` (a drift in the
         place of a clock that was set closed 0.43), and poses that were left out to be its verdict.
