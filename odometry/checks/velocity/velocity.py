@@ -128,7 +128,10 @@ def _other_axes(evidence: Evidence, ways: VelocityWays) -> Finding | None:
 
 
 def _turned(evidence: Evidence, ways: VelocityWays) -> Finding | None:
-    """The finding of wz, by the gyroscope or yaw, whichever agrees with the treads."""
+    """The finding of wz, by the gyroscope or yaw, whichever agrees with the treads.
+
+    None where wz goes with one of these against the treads: they are what is reversed.
+    """
     m = evidence.motion
     for of, turn_rad in (
         ("the yaw of the poses", _yaw_rad(evidence)),
@@ -141,7 +144,12 @@ def _turned(evidence: Evidence, ways: VelocityWays) -> Finding | None:
             continue
         return _nothing("wz", "rad") if _never(ways.turned) else _of_turns(by, of)
     by = relation(ways.turned, m.difference_m / evidence.run.robot.track_width)
-    return None if by is None or by.explained < CLEAR else _of_turns(by, "the treads")
+    if by is None or by.explained < CLEAR:
+        return None
+    others = [relation(ways.turned, of) for of in (_yaw_rad(evidence), evidence.turn_rad(m))]
+    if by.slope < 0 and any(of and of.slope > 0 and of.explained > CLEAR for of in others):
+        return None
+    return _of_turns(by, "the treads")
 
 
 def _yaw_rad(evidence: Evidence) -> FloatArray:

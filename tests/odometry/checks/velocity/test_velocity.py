@@ -83,6 +83,18 @@ def test_velocities_of_the_robot_are_no_fault(run):
     assert not found_in(with_velocity(right, run))
 
 
+def test_treads_that_are_exchanged_do_not_accuse_a_turn_rate(run):
+    """The gyroscope, and the poses, turn as it does."""
+    treads = {"v_left": run.odometry["v_right"], "v_right": run.odometry["v_left"]}
+    columns = {**run.odometry.columns, **treads}
+    swapped = replace(run, odometry=replace(run.odometry, columns=columns))
+    assert found_in(with_velocity(right, swapped)) == []
+    names = [one.name for one in check_recording(with_velocity(right, swapped)).findings]
+    assert {"treads_swapped", "treads_or_gyroscope_reversed"} & set(names)
+    clockwise, *_ = FAULTS["clockwise"]
+    assert [one.name for one in found_in(with_velocity(clockwise, run))] == ["velocity_reversed"]
+
+
 def test_a_left_that_is_right_is_named_where_poses_say_what_left_is():
     run = drive(SPEED_M_S, TURN_RAD_S, sigma_m=0.005, yaw_sigma=0.003)
     yaw = np.cumsum(TURN_RAD_S)[::2] * PERIOD_S
