@@ -15,6 +15,7 @@ from tests.blind.formula import icrs_by_curvature
 from tests.blind.hidden.catalogue import HIDDEN
 from tests.blind.hidden.courses import lagged, sign
 from tests.blind.hidden.kind import Hidden, Kind
+from tests.blind.hidden.mixed import mix
 from tests.blind.hidden.seen import sliding
 from tests.blind.hidden.surroundings import carried
 
@@ -180,3 +181,9 @@ UNNAMED = (
 BY_COMMANDS = ("deadband", "acceleration_limit", "slow_drive", "late_commands", "top_speed")
 BY_COMMANDS += ("in_steps", "voltage_sag", "shared_pump", "hot_motor", "low_battery", "overshoot")
 KINDS = {name: (HIDDEN | SCALED)[name] for name in (*CLEAN, *NAMED, *UNNAMED)}
+
+
+def kind_named(name):
+    """A kind, or two at once: "slope+late_poses"."""
+    parts = [KINDS[part] for part in name.split("+")]
+    return mix(*parts) if len(parts) == 2 else parts[0]

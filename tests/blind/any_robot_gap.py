@@ -12,10 +12,11 @@ import numpy as np
 
 from odometry.io.run_folder import write_run_folder
 from tests.blind import any_robot
-from tests.blind.any_robot_effects import BY_COMMANDS, CLEAN, KINDS, NAMED, UNNAMED
+from tests.blind.any_robot_effects import BY_COMMANDS, CLEAN, NAMED, UNNAMED, kind_named
 from tests.blind.cases import Case
 from tests.blind.ground import Ground, draw_ground
 from tests.blind.hidden.courses import wander
+from tests.blind.hidden.draw import parts_alone
 from tests.blind.hidden.kind import Hidden
 from tests.blind.hidden.mixed import both
 from tests.blind.hidden.motion import move
@@ -39,31 +40,44 @@ def kind_of(seed):
     return str(rng.choice(names))
 
 
+def pair_of(seed):
+    """Two kinds at once for a seed: one with a name, and any other."""
+    rng = np.random.default_rng([seed, 3])
+    named = str(rng.choice(NAMED))
+    others = [name for name in (NAMED, UNNAMED)[rng.integers(2)] if name != named]
+    return f"{named}+{rng.choice(others)}"
+
+
 def make_case(name, seed, folder):
-    """Write the three run folders of a case; what is hidden shows at 2 to 12 times the noise."""
-    kind, rng = KINDS[name], np.random.default_rng([seed, 2])
+    """Write the three run folders of a case; what is hidden shows at 2 to 12 times the noise.
+
+    Of two kinds (`pair_of`) each shows at that by itself.
+    """
+    kind, rng = kind_named(name), np.random.default_rng([seed, 2])
+    by_commands = not set(name.split("+")).isdisjoint(BY_COMMANDS)
     for attempt in range(ATTEMPTS):
         if attempt % 6 == 0:
             robot = any_robot.draw(rng)
             scene = _scene(rng, robot, name)
         hide = kind.draw(rng, scene)
-        drives = [_drive(rng, robot, scene, run, by_commands=name in BY_COMMANDS) for run in RUNS]
+        drives = [_drive(rng, robot, scene, run, by_commands=by_commands) for run in RUNS]
         hidden = [hide(rng, drive.clock) if kind.true else Hidden() for drive in drives]
-        size = size_of_floor(move(scene, drives[1], hidden[1]), scene)
-        if not kind.true or SIZES_OF_FLOOR[0] <= size <= SIZES_OF_FLOOR[1]:
+        alone = parts_alone(scene, move(scene, drives[1], hidden[1]))
+        sizes = [size_of_floor(motion, scene) for motion in alone]
+        if not kind.true or SIZES_OF_FLOOR[0] <= min(sizes) <= max(sizes) <= SIZES_OF_FLOOR[1]:
             break
     else:
         raise ValueError(f"{name} {seed}: no effect of the wanted size in {ATTEMPTS} draws")
     hidden[0], slips = Hidden(), rng.uniform(0, 0.02)
     for run, drive, one in zip(RUNS, drives, hidden, strict=True):
         motion = move(scene, drive, both(_slips(rng, drive, slips), one))
-        _record(folder / run, motion, scene, rng, by_commands=name in BY_COMMANDS)
+        _record(folder / run, motion, scene, rng, by_commands=by_commands)
     gyroscope = bool(scene.sensors.gyroscope)
     return Case(
         *(name, seed, 1.0),
         **{run: folder / run for run in RUNS},
         effects=tuple(part[0] for part in kind.true),
-        truth={"hidden": hidden[1].truth, "robot": _in_numbers(robot, scene.sensors, size)},
+        truth={"hidden": hidden[1].truth, "robot": _in_numbers(robot, scene.sensors, max(sizes))},
         parts=kind.true,
         acceptable_families=(*kind.acceptable, *(() if gyroscope else kind.without_gyroscope)),
         course=kind.course,
@@ -79,12 +93,12 @@ def _body(rng, robot):
 
 def _scene(rng, robot, name):
     """Positions are a tenth as noisy as two seconds of the fastest way are long, or less."""
-    kind, body = KINDS[name], _body(rng, robot)
+    kind, body = kind_named(name), _body(rng, robot)
     good = [
         (rate_hz, sigma_m, sigma_rad)
         for rate_hz, sigma_m, sigma_rad, wanders_m in any_robot.SOURCES.values()
         if not wanders_m and sigma_m < 0.2 * robot.fastest_m_s
-        if name not in NEED_YAW or np.isfinite(sigma_rad)
+        if set(name.split("+")).isdisjoint(NEED_YAW) or np.isfinite(sigma_rad)
     ]
     rate_hz, sigma_m, sigma_rad = good[rng.integers(len(good))]
     sensors = Sensors(

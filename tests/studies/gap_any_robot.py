@@ -1,7 +1,7 @@
 """The gap workflow on robots of any size and pace: what it names.
 
     python -m tests.studies.gap_any_robot [--first-seed 0] [--seeds 60] [--kinds KIND ...]
-                                          [--out gap_any_robot]
+                                          [--pairs] [--out gap_any_robot]
 
 Cases come from `tests/blind/any_robot_gap.py`. Each is a row of cases.csv, written as soon as it is
 known; cases that are in it are not done again. In every third both runs with the effect are
@@ -18,7 +18,7 @@ import numpy as np
 
 from odometry.errors import OdometryError
 from tests.blind.any_robot_effects import CLEAN, KINDS, NAMED
-from tests.blind.any_robot_gap import kind_of, make_case
+from tests.blind.any_robot_gap import kind_of, make_case, pair_of
 from tests.studies import gap_cases
 from tests.studies.gap_table import mistakes_of, table_of
 
@@ -31,13 +31,15 @@ def main():
     parser.add_argument("--seeds", type=int, default=60)
     parser.add_argument("--out", type=Path, default=Path("gap_any_robot"))
     parser.add_argument("--kinds", nargs="*", choices=KINDS, help="each of every seed")
+    parser.add_argument("--pairs", action="store_true", help="two kinds at once")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     file = options.out / "cases.csv"
     rows = gap_cases.read(file)
     known = {(row["kind"], int(row["seed"])) for row in rows}
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    wanted = [(kind, seed) for seed in seeds for kind in options.kinds or [kind_of(seed)]]
+    drawn = pair_of if options.pairs else kind_of
+    wanted = [(kind, seed) for seed in seeds for kind in options.kinds or [drawn(seed)]]
     with file.open("a", newline="", encoding="utf-8") as stream:
         sheet = csv.DictWriter(stream, COLUMNS)
         if not rows:
@@ -53,7 +55,8 @@ def main():
 
 def study(kind, seed):
     """One case as a row."""
-    group = "clean" if kind in CLEAN else "named" if kind in NAMED else "unnamed"
+    group = "pairs" if "+" in kind else "clean" if kind in CLEAN else "unnamed"
+    group = "named" if kind in NAMED else group
     row = dict.fromkeys(COLUMNS, "") | {"group": group, "kind": kind, "seed": f"{seed}"}
     with tempfile.TemporaryDirectory() as folder:
         case = make_case(kind, seed, Path(folder))

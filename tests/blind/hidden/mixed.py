@@ -31,9 +31,10 @@ def both(first, second):
     """The hidden effects of two kinds in one run, the second after the first at each place."""
     one_of = {field.name for field in fields(Hidden)} - {"truth", "reference", "at_place", "parts"}
     joined = {name: _after(getattr(first, name), getattr(second, name)) for name in one_of}
+    at_places = [one.at_place for one in (first, second) if one.at_place]
     return Hidden(
         {"first": first.truth, "second": second.truth},
-        at_place=first.at_place or second.at_place,
+        at_place=_at_both(*at_places) if len(at_places) == 2 else next(iter(at_places), None),
         reference=lambda t, poses: second.reference(*first.reference(t, poses)),
         parts=(first, second),
         **joined,
@@ -62,6 +63,11 @@ def mix(first, second):
 def _after(first, second):
     """Both in turn; what is given besides the first value is given to both."""
     return lambda values, *more: second(first(values, *more), *more)
+
+
+def _at_both(first, second):
+    """Both in turn, at one place."""
+    return lambda row, pose, twist: second(row, pose, first(row, pose, twist))
 
 
 MIXED = {name: mix(*(SINGLE[part] for part in name.split("+"))) for name in MIXED_NAMES}
