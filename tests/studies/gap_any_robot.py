@@ -59,11 +59,12 @@ def study(kind, seed):
     group = "named" if kind in NAMED else group
     row = dict.fromkeys(COLUMNS, "") | {"group": group, "kind": kind, "seed": f"{seed}"}
     with tempfile.TemporaryDirectory() as folder:
-        case = make_case(kind, seed, Path(folder))
-        row |= {name: f"{value:.3g}" for name, value in case.truth["robot"].items()}
-        row["truth"] = str(case.truth["hidden"])
         begin = time.process_time()
         try:
+            case = make_case(kind, seed, Path(folder))
+            row |= {name: f"{value:.3g}" for name, value in case.truth["robot"].items()}
+            row["truth"] = str(case.truth["hidden"])
+            begin = time.process_time()
             found = gap_cases.answer(case, Path(folder) / "gap", both=seed % 3 == 2)
             row |= gap_cases.judged(case, found)
         except (OdometryError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
