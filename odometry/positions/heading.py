@@ -16,10 +16,13 @@ from odometry.arrays import FloatArray
 from odometry.errors import OdometryError
 from odometry.geometry.angles import wrap
 from odometry.positions.carrier import Carrier, carrier_of
+from odometry.positions.lateness import positions_late_s
 from odometry.positions.smoother import Filtered, Way, filtered, smoothed
 from odometry.run import Run
+from odometry.windows.config import WindowConfig
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 from odometry.windows.record import ODOMETRY_GAP
+from odometry.windows.stretches import position_record_with_yaw_rates
 
 STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined
@@ -145,6 +148,9 @@ class FoundHeading:
         Whether a gyroscope carried the yaw between positions, and not the treads.
     estimated_share : float
         Share of the positions at which the yaw could be estimated.
+    positions_late_s : float
+        How late positions are beside treads and gyroscope, which is undone while the yaw is found;
+        the stamps of `run` are as they were.
     """
 
     run: Run
@@ -152,6 +158,7 @@ class FoundHeading:
     yaw_sigma_rad: float
     by_gyroscope: bool
     estimated_share: float = 1.0
+    positions_late_s: float = 0.0
 
     @property
     def least_horizon_m(self) -> float:
@@ -166,10 +173,15 @@ class FoundHeading:
         except_for = (
             f"; at {100 * unknown:.1f} % of the positions it cannot be estimated" if unknown else ""
         )
+        late_s = self.positions_late_s
+        when = "late" if late_s > 0 else "early"
+        timing = (
+            f"; positions are {abs(late_s):.2f} s {when} beside the gyroscope" if late_s else ""
+        )
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
             f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
-            f"degrees, and carried from one to the next {by}{except_for}"
+            f"degrees, and carried from one to the next {by}{except_for}{timing}"
         )
 
 
@@ -220,11 +232,13 @@ def found_heading(run: Run) -> FoundHeading:
         If there are too few positions for a model, they contradict the treads, or do not determine
         the yaw (`yaw_from_positions`).
     """
-    carrier = carrier_of(run)
+    record = position_record_with_yaw_rates(run, WindowConfig())
+    late_s = positions_late_s(record)
+    carrier = carrier_of(_earlier(run, late_s))
     found = yaw_at_positions(carrier)
     if run.pose is None:
         return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
-    rows = np.searchsorted(run.pose.stamps_s, carrier.record.pose_s)
+    rows = np.searchsorted(run.pose.stamps_s - late_s, carrier.record.pose_s)
     yaw, sigma = np.full((2, len(run.pose)), np.nan)
     yaw[rows], sigma[rows] = found.yaw_rad, found.sigma_rad
     columns = {**run.pose.columns, "yaw": yaw, YAW_FOUND: sigma}
@@ -234,4 +248,13 @@ def found_heading(run: Run) -> FoundHeading:
         float(np.nanmedian(found.sigma_rad)),
         carrier.by_gyroscope,
         found.share,
+        late_s,
     )
+
+
+def _earlier(run: Run, late_s: float) -> Run:
+    """The run with its positions earlier by some time."""
+    if run.pose is None or not late_s:
+        return run
+    columns = {**run.pose.columns, "t": run.pose.stamps_s - late_s}
+    return replace(run, pose=replace(run.pose, columns=columns))

@@ -34,8 +34,9 @@ def yaw_rates_of(record: Record) -> FloatArray | None:
     at_stamps, *means = _readings(record, record.run.yaw_rate)
     unbiased = _without_bias(record, at_stamps)
     bias = at_stamps[0] - unbiased[0]
-    misfits = [_misfit(record, rates - bias) for rates in means]
-    if min(misfits) > CLEARLY * _misfit(record, unbiased):
+    speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
+    misfits = [path_misfit(record, speeds, rates - bias) for rates in means]
+    if min(misfits) > CLEARLY * path_misfit(record, speeds, unbiased):
         return unbiased
     return _without_bias(record, means[int(np.argmin(misfits))])
 
@@ -55,28 +56,34 @@ def _readings(record: Record, measured: YawRate) -> list[FloatArray]:
 
 
 def _without_bias(record: Record, rates: FloatArray) -> FloatArray:
+    speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
+
+    def best_of(biases: FloatArray) -> float:
+        misfits = [path_misfit(record, speeds, rates - bias) for bias in biases]
+        return float(biases[np.argmin(misfits)])
+
     tried = np.linspace(-LARGEST_BIAS_RAD_S, LARGEST_BIAS_RAD_S, COARSE)
-    best = tried[np.argmin([_misfit(record, rates - bias) for bias in tried])]
     step = tried[1] - tried[0]
-    tried = best + np.linspace(-step, step, FINE)
-    return np.asarray(rates - tried[np.argmin([_misfit(record, rates - bias) for bias in tried])])
+    return np.asarray(rates - best_of(best_of(tried) + np.linspace(-step, step, FINE)))
 
 
-def _misfit(record: Record, rates: FloatArray) -> float:
-    """Sum of distances between measured positions and the path of these yaw rates (N,).
+def path_misfit(
+    record: Record, speeds_m_s: FloatArray, rates_rad_s: FloatArray, length_m: float = LENGTH_M
+) -> float:
+    """Sum of distances [m] between measured positions and the path of yaw rates (N,).
 
-    The body moves by a share of the mean tread speed, and, forward and aside, by a length times
-    the yaw rate: that holds for any tread ICRs and any place of the antenna.
+    The body moves by a share of the mean tread speeds (N,), and, forward and aside, by a length
+    times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each piece of
+    path of the length has a share and a place of its own.
     """
     steps_s = np.append(np.diff(record.stamps_s), 0.0)
-    speed = record.inputs.tread_speeds_m_s.mean(axis=1)
     travel_m = record.travel_m[record.pose_samples]
-    pieces = np.floor(travel_m / LENGTH_M) + 1e6 * record.stretch
+    pieces = np.floor(travel_m / length_m) + 1e6 * record.stretch
     _, piece = np.unique(pieces, return_inverse=True)
     measured = _centred(record.poses[:, 0] + 1j * record.poses[:, 1], piece)
     forward, turning = (
-        _centred(_path(moved, rates, steps_s)[record.pose_samples], piece)
-        for moved in (speed, rates)
+        _centred(_path(moved, rates_rad_s, steps_s)[record.pose_samples], piece)
+        for moved in (speeds_m_s, rates_rad_s)
     )
     own = _summed(np.abs(forward) ** 2, piece).real
     share = _summed(np.conj(forward) * turning, piece) / np.maximum(own, TINY)
