@@ -174,10 +174,8 @@ class FoundHeading:
             f"; at {100 * unknown:.1f} % of the positions it cannot be estimated" if unknown else ""
         )
         late_s = self.positions_late_s
-        when = "late" if late_s > 0 else "early"
-        timing = (
-            f"; positions are {abs(late_s):.2f} s {when} beside the gyroscope" if late_s else ""
-        )
+        when = f"{abs(late_s):.2f} s {'late' if late_s > 0 else 'early'}"
+        timing = f"; positions are {when} beside the gyroscope" if late_s else ""
         return (
             f"{self.run.folder}: yaw was not measured; it is found from positions with a noise of "
             f"{self.position_sigma_m:.2g} m, to about {np.degrees(self.yaw_sigma_rad):.2g} "
