@@ -16,13 +16,11 @@ from odometry.arrays import FloatArray
 from odometry.errors import OdometryError
 from odometry.geometry.angles import wrap
 from odometry.positions.carrier import Carrier, carrier_of
-from odometry.positions.lateness import positions_late_s
 from odometry.positions.smoother import Filtered, Way, filtered, smoothed
+from odometry.positions.timing import Timing, timings_of
 from odometry.run import Run
-from odometry.windows.config import WindowConfig
 from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
 from odometry.windows.record import ODOMETRY_GAP
-from odometry.windows.stretches import position_record_with_yaw_rates
 
 STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined
@@ -201,14 +199,16 @@ class Headed(NamedTuple):
 
 
 def headed(runs: Sequence[Run]) -> Headed:
-    """Runs with a yaw: `found_heading` of those that lack one.
+    """Runs with a yaw: `found_heading` of those that lack one, all of one recorder.
 
     Raises
     ------
     OdometryError
         See `found_heading`.
     """
-    found = {i: found_heading(run) for i, run in enumerate(runs) if needs_heading(run)}
+    lacking = [i for i, run in enumerate(runs) if needs_heading(run)]
+    timings = timings_of([runs[i] for i in lacking])
+    found = {i: _found(runs[i], timing) for i, timing in zip(lacking, timings, strict=True)}
     with_yaw = tuple(found[i].run if i in found else run for i, run in enumerate(runs))
     return Headed(with_yaw, tuple(found.values()))
 
@@ -230,9 +230,12 @@ def found_heading(run: Run) -> FoundHeading:
         If there are too few positions for a model, they contradict the treads, or do not determine
         the yaw (`yaw_from_positions`).
     """
-    record = position_record_with_yaw_rates(run, WindowConfig())
-    late_s = positions_late_s(record)
-    carrier = carrier_of(_earlier(run, late_s))
+    return _found(run, *timings_of([run]))
+
+
+def _found(run: Run, timing: Timing) -> FoundHeading:
+    late_s = timing.positions_late_s
+    carrier = carrier_of(timing.undone(run))
     found = yaw_at_positions(carrier)
     if run.pose is None:
         return FoundHeading(run, np.nan, np.nan, carrier.by_gyroscope)
@@ -248,11 +251,3 @@ def found_heading(run: Run) -> FoundHeading:
         found.share,
         late_s,
     )
-
-
-def _earlier(run: Run, late_s: float) -> Run:
-    """The run with its positions earlier by some time."""
-    if run.pose is None or not late_s:
-        return run
-    columns = {**run.pose.columns, "t": run.pose.stamps_s - late_s}
-    return replace(run, pose=replace(run.pose, columns=columns))

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.sensors import YawRate, gyroscope_of
+from odometry.sensors import gyroscope_of
 from odometry.windows.record import Record
 
 ComplexArray = NDArray[np.complex128]
@@ -14,7 +14,6 @@ COARSE, FINE = 41, 21  # numbers of biases
 LENGTH_M = 80.0  # of the pieces of path that are compared: of 5 to 80 m the best on 19 recordings
 TINY = np.finfo(float).tiny
 LONGEST_SILENCE_S = 1.0  # of the gyroscope, over all of the run
-CLEARLY = 0.9  # of the misfit, with which rates are means: 0.97 and more on 26 recordings at 20 Hz
 
 
 def yaw_rates_of(record: Record) -> FloatArray | None:
@@ -22,40 +21,16 @@ def yaw_rates_of(record: Record) -> FloatArray | None:
 
     The bias is that with which the path of mean tread speed and this yaw rate has the shape of
     the measured positions, over pieces of LENGTH_M, each with slip and lever arms of its own.
-    Rates are those at their stamps, or, where these positions clearly say so, means from one stamp
-    to the next or from the one before.
     """
     gyroscope = gyroscope_of(record.run.yaw_rate)
-    if gyroscope is None or record.run.yaw_rate is None:
+    if gyroscope is None:
         return None
-    _, _, _, silent_s = gyroscope.between(record.stamps_s[:-1], record.stamps_s[1:])
+    stamps_s = record.stamps_s
+    turn, _, _, silent_s = gyroscope.between(stamps_s[:-1], stamps_s[1:])
     if silent_s.sum() > LONGEST_SILENCE_S:
         return None
-    at_stamps, *means = _readings(record, record.run.yaw_rate)
-    unbiased = _without_bias(record, at_stamps)
-    bias = at_stamps[0] - unbiased[0]
-    speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
-    misfits = [path_misfit(record, speeds, rates - bias) for rates in means]
-    if min(misfits) > CLEARLY * path_misfit(record, speeds, unbiased):
-        return unbiased
-    return _without_bias(record, means[int(np.argmin(misfits))])
-
-
-def _readings(record: Record, measured: YawRate) -> list[FloatArray]:
-    """Yaw rates (N,) with measured ones at their stamps, and as means after and before these."""
-    steps_s = np.diff(measured.stamps_s)
-    after, before = (
-        np.append(0.0, np.cumsum(rates * steps_s))
-        for rates in (measured.yaw_rate_rad_s[:-1], measured.yaw_rate_rad_s[1:])
-    )
-    turned = (
-        np.interp(record.stamps_s, measured.stamps_s, of)
-        for of in ((after + before) / 2, after, before)
-    )
-    return [np.append(np.diff(of) / np.diff(record.stamps_s), 0.0) for of in turned]
-
-
-def _without_bias(record: Record, rates: FloatArray) -> FloatArray:
+    steps_s = np.diff(stamps_s)
+    rates = np.append(turn / steps_s, 0.0)
     speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
 
     def best_of(biases: FloatArray) -> float:
@@ -74,7 +49,7 @@ def path_misfit(
 
     The body moves by a share of the mean tread speeds (N,), and, forward and aside, by a length
     times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each piece of
-    path of the length has a share and a place of its own.
+    path of the length has a share and lengths of its own.
     """
     steps_s = np.append(np.diff(record.stamps_s), 0.0)
     travel_m = record.travel_m[record.pose_samples]

@@ -1,4 +1,4 @@
-"""How late positions without yaw are, against the delay that was put in."""
+"""When positions and yaw rates were measured, against the delays that were put in."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
-from odometry.positions.lateness import positions_late_s
+from odometry.positions.timing import positions_late_s, timings_of
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches import position_record_with_yaw_rates
 from tests.odometry.positions_drives import drive, emptied, table
@@ -47,3 +47,28 @@ def test_the_yaw_of_late_positions_is_that_at_which_they_were_measured():
     assert np.sqrt(np.nanmean(off_rad**2)) < np.radians(2.0)
     assert np.array_equal(found.run.pose.stamps_s, late.pose.stamps_s)
     assert "late beside the gyroscope" in found.words
+
+
+def with_means(run, early_s):
+    """The run with a gyroscope at 5 Hz: means over each period, stamped earlier than its middle."""
+    t, rates = run.imu.stamps_s, run.imu["gyro_z"]
+    means = rates[: len(rates) // 4 * 4].reshape(-1, 4).mean(axis=1)
+    middles_s = t[::4][: len(means)] + 1.5 * (t[1] - t[0])
+    return replace(run, imu=table({"t": middles_s - early_s, "gyro_z": means}))
+
+
+@pytest.mark.parametrize("early_s", [0.0, 0.1, -0.1])
+def test_yaw_rates_that_are_means_over_their_period_are_known_for_that(early_s):
+    run = emptied(with_means(drive(3, noise_m=0.01, gyroscope=True, duration_s=200.0), early_s))
+    (timing,) = timings_of([run])
+    assert timing == (0.0, pytest.approx(early_s))
+
+
+def test_what_a_yaw_rate_means_is_the_same_in_all_runs_of_a_recorder():
+    """A noisy run alone says nothing."""
+    clear, noisy = (
+        emptied(with_means(drive(3, noise_m=noise_m, gyroscope=True, duration_s=200.0), 0.1))
+        for noise_m in (0.01, 0.3)
+    )
+    assert timings_of([noisy])[0].rates_early_s == 0.0
+    assert timings_of([clear, noisy])[1].rates_early_s == pytest.approx(0.1)
