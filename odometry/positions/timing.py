@@ -20,11 +20,13 @@ from odometry.windows.record import Record
 from odometry.windows.stretches import position_record_with_yaw_rates
 
 LONGEST_S, COARSE_S, FINE_S = 1.0, 0.1, 0.01
-LENGTH_M = 20.0  # of the pieces of path in which positions are compared to find how late they are
+TRIED_S = np.arange(-LONGEST_S, LONGEST_S + COARSE_S / 2, COARSE_S)
+IN_TIME = len(TRIED_S) // 2
+LENGTH_M = 20.0  # of the pieces of path that are compared
+PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
 # Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
 LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
 BESIDE_TREADS = 0.95  # of the misfit with late treads alone
-PERIODS = (0.5, -0.5)  # by which means after and before their stamps are early
 
 
 class Timing(NamedTuple):
@@ -59,53 +61,66 @@ def timings_of(runs: Sequence[Run]) -> tuple[Timing, ...]:
         If a run has too few positions.
     """
     records = [position_record_with_yaw_rates(run, WindowConfig()) for run in runs]
-    late_s = [positions_late_s(record) for record in records]
-    periods = _periods_early(records, late_s)
+    compared = {
+        i: _Compared(record, record.inputs.yaw_rate_rad_s)
+        for i, record in enumerate(records)
+        if record.inputs.yaw_rate_rad_s is not None
+    }
+    rises, positions = np.zeros(len(PERIODS)), 1
+    for i, of in compared.items():
+        least = of.misfits_m.min(axis=(1, 2))
+        rises += len(records[i].poses) * np.log(least / least[0])
+        positions += len(records[i].poses)
+    best = int(np.argmin(rises))
+    if rises[best] > positions * np.log(MEANS_CLEARLY):
+        best = 0
     return tuple(
-        Timing(late, periods * _period_s(record))
-        for late, record in zip(late_s, records, strict=True)
+        compared[i].timing(best) if i in compared else Timing() for i in range(len(records))
     )
 
 
-def positions_late_s(record: Record) -> float:
-    """How late positions are beside treads and gyroscope, by less than LONGEST_S; early negative.
+class _Compared:
+    """One record against its positions, for each meaning of its yaw rates and each delay.
 
-    0 where the positions do not clearly say so, or no gyroscope was recorded.
+    Attributes
+    ----------
+    misfits_m : (3, 2, D)
+        For each of PERIODS and of TRIED_S: positions late, and treads alone.
     """
-    rates = record.inputs.yaw_rate_rad_s
-    if rates is None:
-        return 0.0
-    speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
 
-    def misfit(late_s: float, turns_late_s: float) -> float:
-        moved = _delayed(record, speeds, late_s), _delayed(record, rates, turns_late_s)
-        return path_misfit(record, *moved, LENGTH_M)
+    def __init__(self, record: Record, rates_rad_s: FloatArray) -> None:
+        self._record = record
+        self._rates = rates_rad_s
+        self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
+        self._early_s = [periods * _period_s(record) for periods in PERIODS]
+        self.misfits_m = np.array(
+            [
+                [
+                    [self._misfit_m(late_s, late_s + early_s) for late_s in TRIED_S],
+                    [self._misfit_m(late_s, early_s) for late_s in TRIED_S],
+                ]
+                for early_s in self._early_s
+            ]
+        )
 
-    tried = np.arange(-LONGEST_S, LONGEST_S + COARSE_S / 2, COARSE_S)
-    coarse = [misfit(late_s, late_s) for late_s in tried]
-    best = int(np.argmin(coarse))
-    if best in (0, len(tried) - 1) or coarse[best] > LATE_CLEARLY * misfit(0.0, 0.0):
-        return 0.0
-    if coarse[best] > BESIDE_TREADS * min(misfit(late_s, 0.0) for late_s in tried):
-        return 0.0
-    near = tried[best] + np.arange(-COARSE_S, COARSE_S + FINE_S / 2, FINE_S)
-    return float(near[np.argmin([misfit(late_s, late_s) for late_s in near])])
+    def timing(self, meaning: int) -> "Timing":
+        """How late positions are, for one meaning of the yaw rates; 0 where that is not clear."""
+        of_positions, of_treads = self.misfits_m[meaning]
+        early_s, best = self._early_s[meaning], int(np.argmin(of_positions))
+        if (
+            best in (0, len(TRIED_S) - 1)
+            or of_positions[best] > LATE_CLEARLY * of_positions[IN_TIME]
+            or of_positions[best] > BESIDE_TREADS * of_treads.min()
+        ):
+            return Timing(0.0, early_s)
+        near_s = TRIED_S[best] + np.arange(-COARSE_S, COARSE_S + FINE_S / 2, FINE_S)
+        misfits_m = [self._misfit_m(late_s, late_s + early_s) for late_s in near_s]
+        return Timing(float(near_s[np.argmin(misfits_m)]), early_s)
 
-
-def _periods_early(records: Sequence[Record], positions_late_s: Sequence[float]) -> float:
-    """By how many periods yaw rates are early: one of PERIODS, or 0."""
-    rises, positions = np.zeros(len(PERIODS)), 1
-    for record, late_s in zip(records, positions_late_s, strict=True):
-        rates = record.inputs.yaw_rate_rad_s
-        if rates is None:
-            continue
-        speeds = _delayed(record, record.inputs.tread_speeds_m_s.mean(axis=1), late_s)
-        tried_s = [late_s, *(late_s + periods * _period_s(record) for periods in PERIODS)]
-        misfits = [path_misfit(record, speeds, _delayed(record, rates, of_s)) for of_s in tried_s]
-        rises += len(record.poses) * np.log(np.divide(misfits[1:], misfits[0]))
-        positions += len(record.poses)
-    best = int(np.argmin(rises))
-    return PERIODS[best] if rises[best] < positions * np.log(MEANS_CLEARLY) else 0.0
+    def _misfit_m(self, late_s: float, turns_late_s: float) -> float:
+        speeds = _delayed(self._record, self._speeds, late_s)
+        rates = _delayed(self._record, self._rates, turns_late_s)
+        return path_misfit(self._record, speeds, rates, LENGTH_M)
 
 
 def _period_s(record: Record) -> float:

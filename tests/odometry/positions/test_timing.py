@@ -7,9 +7,7 @@ import pytest
 
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
-from odometry.positions.timing import positions_late_s, timings_of
-from odometry.windows.config import WindowConfig
-from odometry.windows.stretches import position_record_with_yaw_rates
+from odometry.positions.timing import timings_of
 from tests.odometry.positions_drives import drive, emptied, table
 
 
@@ -18,7 +16,7 @@ def moved_in_time(of, late_s):
 
 
 def late_s_of(run):
-    return positions_late_s(position_record_with_yaw_rates(emptied(run), WindowConfig()))
+    return timings_of([emptied(run)])[0].positions_late_s
 
 
 @pytest.mark.parametrize("late_s", [0.37, -0.22])
@@ -68,7 +66,18 @@ def test_what_a_yaw_rate_means_is_the_same_in_all_runs_of_a_recorder():
     """A noisy run alone says nothing."""
     clear, noisy = (
         emptied(with_means(drive(3, noise_m=noise_m, gyroscope=True, duration_s=200.0), 0.1))
-        for noise_m in (0.01, 0.3)
+        for noise_m in (0.003, 0.3)
     )
     assert timings_of([noisy])[0].rates_early_s == 0.0
     assert timings_of([clear, noisy])[1].rates_early_s == pytest.approx(0.1)
+
+
+def test_rates_early_by_as_much_as_treads_are_late_are_no_late_positions():
+    """A drive in time shows what the rates mean, and so what is late in the other."""
+    first, second = (
+        with_means(drive(seed, noise_m=0.003, gyroscope=True, duration_s=200.0), 0.1)
+        for seed in (3, 4)
+    )
+    late = replace(second, odometry=moved_in_time(second.odometry, -0.1))
+    timing = timings_of([emptied(first), emptied(late)])[1]
+    assert timing == (0.0, pytest.approx(0.1))
