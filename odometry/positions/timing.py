@@ -26,7 +26,7 @@ LENGTH_M = 20.0  # of the pieces of path that are compared
 PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
 # Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
 LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
-BESIDE_TREADS = 0.95  # of the misfit with late treads alone
+BESIDE_TREADS = 0.95  # of the misfit with late treads alone, whatever the rates mean
 
 
 class Timing(NamedTuple):
@@ -105,7 +105,7 @@ class _Compared:
 
     def timing(self, meaning: int) -> "Timing":
         """How late positions are, for one meaning of the yaw rates; 0 where that is not clear."""
-        of_positions, of_treads = self.misfits_m[meaning]
+        of_positions, of_treads = self.misfits_m[meaning, 0], self.misfits_m[:, 1]
         early_s, best = self._early_s[meaning], int(np.argmin(of_positions))
         if (
             best in (0, len(TRIED_S) - 1)

@@ -81,3 +81,9 @@ def test_rates_early_by_as_much_as_treads_are_late_are_no_late_positions():
     late = replace(second, odometry=moved_in_time(second.odometry, -0.1))
     timing = timings_of([emptied(first), emptied(late)])[1]
     assert timing == (0.0, pytest.approx(0.1))
+
+
+def test_late_treads_beside_rates_of_unknown_meaning_are_no_late_positions():
+    run = with_means(drive(4, noise_m=0.003, gyroscope=True, duration_s=200.0), 0.1)
+    late = replace(run, odometry=moved_in_time(run.odometry, -0.13))
+    assert timings_of([emptied(late)])[0].positions_late_s == 0.0
