@@ -18,6 +18,7 @@ from terrain.classification.photographs.patches import (
     stated_metres_per_pixel,
 )
 from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
+from terrain.classification.photographs.scenes import with_scenes
 from terrain.classification.photographs.trained_on import TrainedOn
 from terrain.classification.training import Training
 from terrain.errors import ImageError, PatchError
@@ -92,7 +93,7 @@ def adapt(
     photos = find_photos(Path(root))
     check_depth([photo.path for photo in photos], ImageError)
     check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
-    patches = load_patches(photos, old.patch_size_px)
+    patches = with_scenes(load_patches(photos, old.patch_size_px))
     single = min(Counter(photo.label for photo in photos).values()) < 2
     used = _in_parts(patches) if single else patches
     scale = metres_per_pixel or stated_metres_per_pixel(Path(root)) or old.metres_per_pixel
@@ -111,7 +112,7 @@ def adapt(
         ).fit(
             used.images,
             used.labels,
-            used.groups,
+            used.scenes,
             beside=beside,
             trained_on=patches.trained_on | before if beside else patches.trained_on,
             processes=processes,
@@ -124,7 +125,7 @@ def adapt(
     right = {name: _held_out(classifier) for name, classifier in found.items()}
     right[OLD] = (np.asarray(old.predict(patches.images)) == np.array(patches.labels))[rows]
     found[OLD] = old
-    codes, groups = found[ALONE].cross_validation_.codes, np.asarray(patches.groups)[rows]
+    codes, groups = found[ALONE].cross_validation_.codes, np.asarray(patches.scenes)[rows]
     scores = {name: balanced_accuracy(codes, np.where(of, codes, -1)) for name, of in right.items()}
     kept = clearly_best(codes, right, groups)
     return Adaptation(

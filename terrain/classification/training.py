@@ -1,6 +1,6 @@
 """From a folder of labelled patches to a fitted classifier."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from terrain.classification.classifier import TerrainClassifier
@@ -14,6 +14,7 @@ from terrain.classification.photographs.patches import (
     stated_metres_per_pixel,
 )
 from terrain.classification.photographs.photo_faults import check_no_photo_in_two_classes
+from terrain.classification.photographs.scenes import with_scenes
 from terrain.errors import ImageError
 from terrain.image_depth import check_depth
 
@@ -110,7 +111,7 @@ def train(
     check_depth([photo.path for photo in photos], ImageError)
     check_no_photo_in_two_classes([(photo.path, photo.label) for photo in photos])
     size_px = patch_size_px or min(LARGEST_PATCH_PX, fitting_side_px(photos))
-    patches = load_patches(photos, size_px)
+    patches = with_scenes(load_patches(photos, size_px))
     scale = metres_per_pixel or stated_metres_per_pixel(root)
     classifier = TerrainClassifier(
         preset,
@@ -123,11 +124,12 @@ def train(
     copies = None
     if augment:
         settings = Augmentation() if scale is None else Augmentation(largest_crop=1.0)
-        copies = load_copies(photos, size_px, settings)
+        copies = replace(load_copies(photos, size_px, settings), scene_of=patches.scene_of)
+        copies = replace(copies, groups=copies.scenes)
     classifier.fit(
         patches.images,
         patches.labels,
-        patches.groups,
+        patches.scenes,
         copies=copies,
         progress=show_progress,
         trained_on=patches.trained_on,

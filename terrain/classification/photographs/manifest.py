@@ -1,6 +1,7 @@
 """The file beside labelled photographs that groups them and states their scale."""
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,6 +54,35 @@ def read_manifest(root: Path) -> Manifest | None:
     return None
 
 
+def photo_ids_of(manifest: Manifest | None, photos: Sequence[Path]) -> dict[Path, str]:
+    """The photo_id of each resolved path that the manifest names; PatchError if it names none.
+
+    A file that was moved to another class is named by its old path: where nothing lies there, and
+    no other row of a class beside has its name, the row is of the moved file.
+    """
+    if manifest is None:
+        return {}
+    present = {photo.resolve() for photo in photos}
+    names = Counter(map(_beside, manifest.photo_ids))
+    gone = {
+        _beside(path): photo_id
+        for path, photo_id in manifest.photo_ids.items()
+        if path not in present and names[_beside(path)] == 1
+    }
+    found = {
+        path: photo_id
+        for path in present
+        if (photo_id := manifest.photo_ids.get(path, gone.get(_beside(path)))) is not None
+    }
+    if not found:
+        raise PatchError(
+            f"{manifest.file}: none of its {len(manifest.photo_ids)} paths is one of the "
+            f"{len(photos)} photographs: it names {next(iter(manifest.photo_ids))}, and there is "
+            f"{photos[0].resolve()}; paths are relative to the folder of manifest.csv"
+        )
+    return found
+
+
 def _names_files_in(root: Path, paths: Sequence[str]) -> bool:
     """Whether a path ends in the name of a file in ``root/<class>/``, wherever it leads."""
     named = {path.replace("\\", "/").rpartition("/")[2] for path in paths}
@@ -101,3 +131,8 @@ def _scale(file: Path, columns: Mapping[str, list[str]]) -> float | None:
     if not 0 < scale < math.inf:
         raise PatchError(f"{file}: metres_per_pixel is {scale}; expected a number above zero")
     return scale
+
+
+def _beside(path: Path) -> tuple[Path, str]:
+    """What a file keeps when it is moved to a class beside: the folder of classes and its name."""
+    return path.parent.parent, path.name

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage
-from terrain.classification.photographs.manifest import Manifest, read_manifest
+from terrain.classification.photographs.manifest import photo_ids_of, read_manifest
 from terrain.classification.photographs.photo_faults import check_classes
 from terrain.classification.photographs.thumbnails import thumbnail_text
 from terrain.classification.photographs.trained_on import TrainedOn, check_names, image_sum
@@ -34,7 +34,8 @@ class LabelledPatches:
     """Patches of one size with their terrain names, groups and the photographs they are of.
 
     `image_sums` and `thumbnails` are those of the photographs, by `image_sum` and `thumbnail_text`;
-    `sides_px` the shorter side of each.
+    `sides_px` the shorter side of each; `alike` photographs of several groups that look alike, and
+    `scene_of` the scene of each group that has another name than that, both by `with_scenes`.
     """
 
     images: list[ByteImage] = field(default_factory=list)
@@ -45,6 +46,13 @@ class LabelledPatches:
     image_sums: list[str] = field(default_factory=list)
     thumbnails: list[str] = field(default_factory=list)
     sides_px: dict[Path, int] = field(default_factory=dict)
+    alike: list[tuple[Path, Path]] = field(default_factory=list)
+    scene_of: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def scenes(self) -> list[str]:
+        """What is held out together: the groups, those of photographs that look alike as one."""
+        return [self.scene_of.get(group, group) for group in self.groups]
 
     @property
     def trained_on(self) -> TrainedOn:
@@ -82,7 +90,7 @@ def find_photos(root: Path) -> list[LabelledPhoto]:
         raise PatchError(
             f"{root} holds no photographs; expected {root}/<class>/*.jpg or *.png{hint}"
         )
-    groups = _photo_ids(read_manifest(root), paths)
+    groups = photo_ids_of(read_manifest(root), paths)
     photos = [
         LabelledPhoto(path, path.parent.name, groups.get(path.resolve(), str(path)))
         for path in paths
@@ -214,37 +222,3 @@ def stated_metres_per_pixel(root: Path) -> float | None:
     """
     manifest = read_manifest(root)
     return None if manifest is None else manifest.metres_per_pixel
-
-
-def _photo_ids(manifest: Manifest | None, photos: Sequence[Path]) -> dict[Path, str]:
-    """The photo_id of each resolved path that the manifest names; PatchError if it names none.
-
-    A file that was moved to another class is named by its old path: where nothing lies there, and
-    no other row of a class beside has its name, the row is of the moved file.
-    """
-    if manifest is None:
-        return {}
-    present = {photo.resolve() for photo in photos}
-    names = Counter(map(_beside, manifest.photo_ids))
-    gone = {
-        _beside(path): photo_id
-        for path, photo_id in manifest.photo_ids.items()
-        if path not in present and names[_beside(path)] == 1
-    }
-    found = {
-        path: photo_id
-        for path in present
-        if (photo_id := manifest.photo_ids.get(path, gone.get(_beside(path)))) is not None
-    }
-    if not found:
-        raise PatchError(
-            f"{manifest.file}: none of its {len(manifest.photo_ids)} paths is one of the "
-            f"{len(photos)} photographs: it names {next(iter(manifest.photo_ids))}, and there is "
-            f"{photos[0].resolve()}; paths are relative to the folder of manifest.csv"
-        )
-    return found
-
-
-def _beside(path: Path) -> tuple[Path, str]:
-    """What a file keeps when it is moved to a class beside: the folder of classes and its name."""
-    return path.parent.parent, path.name

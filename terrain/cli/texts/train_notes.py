@@ -6,7 +6,7 @@ from pathlib import Path
 from terrain.classification.likeness.noticed_alterations import unnoticed
 from terrain.classification.photographs.manifest import read_manifest
 from terrain.classification.photographs.patches import SUFFIXES, LabelledPatches
-from terrain.classification.photographs.photo_faults import look_alikes, unread_note
+from terrain.classification.photographs.photo_faults import unread_note
 from terrain.classification.photographs.photo_origins import set_apart
 from terrain.classification.training import LARGEST_PATCH_PX, Training
 
@@ -68,8 +68,9 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
             f"Note: manifest.csv groups {len(grouped)} of {len(photos)} photographs; each of the "
             f"others is a group of its own, such as {min(photos - grouped)}"
         )
-    alike = look_alikes(dict(zip(patches.photos, patches.groups, strict=True)))
+    alike = patches.alike
     label_of = dict(zip(patches.photos, patches.labels, strict=True))
+    scene_of = dict(zip(patches.photos, patches.scenes, strict=True))
     if contrary := [pair for pair in alike if label_of[pair[0]] != label_of[pair[1]]]:
         one, other = contrary[0]
         yield (
@@ -79,10 +80,12 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
         )
     if alike := [pair for pair in alike if pair not in contrary]:
         one, other = alike[0]
+        apart = {label_of[one] for one, other in alike if scene_of[one] != scene_of[other]}
         yield (
             f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
-            f"and {other}: copies, pieces, or frames of one scene. What is held out is no test "
-            "then; give photographs of one scene the same photo_id in manifest.csv"
+            f"and {other}: copies, pieces, or frames of one scene. They are held out together; "
+            "what this check misses needs the same photo_id in manifest.csv"
+            + (f". All of {', '.join(sorted(apart))} would be one scene: no test" if apart else "")
         )
 
 

@@ -29,7 +29,7 @@ def summary(classifier: TerrainClassifier, patches: LabelledPatches) -> str:
     answers = found.probabilities.argmax(axis=1)
     names = _photo_names(patches, found)
     true, voted, rows = photo_votes(found.codes, found.probabilities, names)
-    groups = np.asarray(patches.groups)[found.rows[rows]]
+    groups = np.asarray(patches.scenes)[found.rows[rows]]
     low, high = balanced_accuracy_interval(true, voted, groups, np.random.default_rng(0))
     table = confusion(found.codes, answers, len(classifier.classes_))
     chosen = "given" if classifier.n_neighbors else "chosen"
@@ -111,7 +111,7 @@ def _photo_names(patches: LabelledPatches, found: CrossValidation) -> AnyArray:
 
 def _origin(patches: LabelledPatches) -> str:
     """How many photographs, and what the cross-validation keeps whole."""
-    photos, groups = len(set(patches.photos)), len(set(patches.groups))
+    photos, groups = len(set(patches.photos)), len(set(patches.scenes))
     if groups == photos:
         return f"{photos} photographs, cross-validated by photograph"
     return f"{photos} photographs in {groups} groups, cross-validated by group"

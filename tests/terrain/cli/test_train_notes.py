@@ -8,6 +8,7 @@ import numpy as np
 from terrain.classification.answer import COLOURLESS
 from terrain.classification.no_ground import SKY
 from terrain.classification.photographs.patches import find_photos, load_patches
+from terrain.classification.photographs.scenes import with_scenes
 from terrain.cli.texts.labelled_images import print_unnamed
 from terrain.cli.texts.train_notes import notes
 
@@ -15,7 +16,7 @@ from terrain.cli.texts.train_notes import notes
 def said(folder, noticed_share=None, **options):
     training = SimpleNamespace(
         classifier=SimpleNamespace(patch_size_px=64, colour_=False, noticed_share_=noticed_share),
-        patches=load_patches(find_photos(folder), 64),
+        patches=with_scenes(load_patches(find_photos(folder), 64)),
     )
     return list(notes(training, folder, colour=False, **options))
 
