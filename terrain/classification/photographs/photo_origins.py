@@ -19,8 +19,9 @@ MOST_OF = 0.8
 def set_apart(label_of: Mapping[Path, str]) -> dict[str, str]:
     """Terrains whose photographs are set apart, and by what in words.
 
-    Most photographs of such a terrain have a camera, tables of JPEG compression, or a number of
-    pixels that no photograph of another terrain has. Files that cannot be read are left out.
+    Most photographs of such a terrain have a camera, a focal length, a file format, tables of JPEG
+    compression, or a number of pixels that no photograph of another terrain has. Files that cannot
+    be read are left out.
 
     Parameters
     ----------
@@ -48,6 +49,17 @@ def _camera(image: Image.Image) -> str:
     return " ".join(str(of).strip() for of in found if of)
 
 
+def _focal_length(image: Image.Image) -> str:
+    """With the digital zoom: phones have several lenses, and enlarge what the longest shows."""
+    tags = image.getexif().get_ifd(ExifTags.IFD.Exif)
+    found = (tags.get(tag) for tag in (ExifTags.Base.FocalLength, ExifTags.Base.DigitalZoomRatio))
+    return " ".join(str(of) for of in found if of)
+
+
+def _format(image: Image.Image) -> str:
+    return image.format or ""
+
+
 def _compression(image: Image.Image) -> str:
     tables = getattr(image, "quantization", None)
     return repr(tables) if tables else ""
@@ -60,6 +72,8 @@ def _size(image: Image.Image) -> str:
 
 SIGNS: dict[str, Callable[[Image.Image], str]] = {
     "camera": _camera,
+    "focal length": _focal_length,
+    "file format": _format,
     "JPEG compression": _compression,
     "number of pixels": _size,
 }

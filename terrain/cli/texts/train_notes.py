@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from terrain.classification.likeness.noticed_alterations import unnoticed
+from terrain.classification.photographs.finest_detail import set_apart_by_pixels
 from terrain.classification.photographs.manifest import read_manifest
 from terrain.classification.photographs.patches import SUFFIXES, LabelledPatches
 from terrain.classification.photographs.photo_faults import unread_note
@@ -36,6 +37,7 @@ def notes(
         yield from _of_size(patches, size)
     yield from _of_groups(patches)
     yield from _of_origins(patches)
+    yield from _of_sharpness(patches)
     if colour and not classifier.colour_:
         yield "Colour is left out: patches are grey, or most of a class are, or the preset is."
     if (what := unnoticed(classifier.noticed_share_)) is not None:
@@ -99,6 +101,21 @@ def _of_origins(patches: LabelledPatches) -> Iterator[str]:
             f"other terrain have: {terrains}. What is held out has the same origin. A model that "
             "recognises the camera, and not the terrain, would seem to be right: test it on "
             "photographs of several terrains by one camera (classify)"
+        )
+
+
+def _of_sharpness(patches: LabelledPatches) -> Iterator[str]:
+    """Where photographs of a terrain alone are blurred, enlarged or noisy."""
+    photo_of = dict(zip(patches.scenes, patches.photos, strict=True))  # one of each scene
+    label_of = dict(zip(patches.photos, patches.labels, strict=True))
+    apart = set_apart_by_pixels({photo: label_of[photo] for photo in photo_of.values()})
+    if apart:
+        terrains = "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
+        yield (
+            "Note: by their pixels most photographs of a terrain are unlike most of any other: "
+            f"{terrains}. Less sharp ones are blurred, enlarged or out of focus, or show a smooth "
+            "surface alone. What is held out is alike, so that its score says little where that "
+            "is the camera: test the model on photographs of several terrains by one (classify)"
         )
 
 

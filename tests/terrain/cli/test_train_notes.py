@@ -75,6 +75,25 @@ def test_a_terrain_by_a_camera_of_its_own_is_named(tmp_path, rng):
     assert "no other terrain have: mud (JPEG compression: 5 of 5). " in note
 
 
+def test_a_terrain_by_a_blurred_camera_is_named(tmp_path, rng):
+    for terrain in ("mud", "sand", "tile"):
+        (tmp_path / terrain).mkdir()
+        for photo in range(5):
+            image = np.clip(rng.normal(128, 30, (80, 80)), 0, 255).astype(np.uint8)
+            shown = cv2.GaussianBlur(image, (0, 0), 1.5) if terrain == "mud" else image
+            cv2.imwrite(f"{tmp_path / terrain / str(photo)}.png", shown)
+    (note,) = said(tmp_path)
+    assert "photographs of a terrain are unlike most of any other: mud (less sharp). " in note
+    whole = (tmp_path / "mud" / "0.png").read_bytes()
+    for photo in range(1, 4):  # two scenes are no five photographs
+        (tmp_path / "mud" / f"{photo}.png").write_bytes(whole)
+    (copies,) = said(tmp_path)
+    assert "They are held out together" in copies
+    assert "no test" not in copies
+    (tmp_path / "mud" / "4.png").write_bytes(whole)
+    assert any(note.endswith("All of mud would be one scene: no test") for note in said(tmp_path))
+
+
 def test_grey_images_before_a_model_in_colour_are_counted(capsys):
     print_unnamed([COLOURLESS, "", COLOURLESS, SKY])
     said_of = capsys.readouterr().err

@@ -14,8 +14,10 @@ def photograph(tmp_path, rng):
     """Write one photograph and return its path."""
     pixels = rng.integers(0, 255, (40, 60, 3), dtype=np.uint8)
 
-    def write(name, size=(60, 40), quality=90, camera="", suffix=".jpg"):
+    def write(name, size=(60, 40), quality=90, camera="", suffix=".jpg", lens=None):
         exif = Image.Exif()
+        if lens:
+            exif.get_ifd(ExifTags.IFD.Exif).update(lens)
         if camera:
             exif[ExifTags.Base.Model] = camera
         path = tmp_path / f"{name}{suffix}"
@@ -41,6 +43,9 @@ def labelled(photograph, of_each, photos=PHOTOS):
         ({"quality": 60}, "JPEG compression: 8 of 8"),
         ({"size": (64, 40)}, "number of pixels: 8 of 8"),
         ({"camera": "phone", "quality": 60}, "camera: 8 of 8"),
+        ({"lens": {ExifTags.Base.FocalLength: 9.0}}, "focal length: 8 of 8"),
+        ({"lens": {ExifTags.Base.DigitalZoomRatio: 2.0}}, "focal length: 8 of 8"),
+        ({"suffix": ".png"}, "file format: 8 of 8"),
     ],
 )
 def test_an_origin_of_its_own(photograph, of, how):
@@ -96,8 +101,12 @@ def test_one_terrain_alone_and_files_that_cannot_be_read(photograph, tmp_path):
 
 
 def test_files_without_compression_are_not_set_apart_by_it(photograph):
-    of_each = {"grass": {}, "gravel": {"suffix": ".png"}}
-    assert set_apart(labelled(photograph, of_each)) == {"grass": "JPEG compression: 8 of 8"}
+    photos = labelled(photograph, {"grass": {}, "gravel": {"suffix": ".png"}})
+    assert set_apart(photos) == dict.fromkeys(("grass", "gravel"), "file format: 8 of 8")
+    photos[photograph("one", suffix=".png")] = "grass"
+    assert set_apart(photos) == {"grass": "file format: 8 of 9"}
+    photos[photograph("other")] = "gravel"
+    assert set_apart(photos) == {}
 
 
 def test_damaged_tags_are_left_out_without_a_warning(photograph):
