@@ -103,12 +103,12 @@ def check_no_photo_in_two_classes(photos: Sequence[tuple[Path, str]]) -> None:
 
 
 def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
-    """Photographs that look nearly like one of another group, each with that one.
+    """Photographs that look nearly like one of another group, each with such ones, in order.
 
     By the correlation of small blurred thumbnails: images of one scene, frames of a camera that
     hardly moves, copies that were compressed again, turned by quarters or mirrored. Those without
     any contrast are like none. And frames of a burst, by `shifted_frames`, and pieces of one
-    photograph, by `pieces`.
+    photograph, by `pieces`. Of many that look alike each is named with the nearest and the first.
     """
     photos = list(group_of)
     thumbnails = np.stack([_thumbnail(photo) for photo in photos])
@@ -117,13 +117,13 @@ def look_alikes(group_of: Mapping[Path, str]) -> list[tuple[Path, Path]]:
         np.maximum(alike, thumbnails @ view.T, out=alike)
     group = np.unique(list(group_of.values()), return_inverse=True)[1]
     alike[group[:, None] == group] = -1.0
-    nearest = alike.argmax(axis=1)
-    found = np.flatnonzero(alike[np.arange(len(photos)), nearest] > ALIKE)
-    pairs = {photos[int(i)]: photos[int(nearest[i])] for i in found}
-    for one, other in chain(shifted_frames(group_of), pieces(group_of)):
-        pairs.setdefault(one, other)
-        pairs.setdefault(other, one)
-    return sorted(pairs.items())
+    pairs: set[tuple[Path, Path]] = set()
+    for one in np.flatnonzero(alike.max(axis=1) > ALIKE).tolist():
+        for other in (alike[one].argmax(), (alike[one] > ALIKE).argmax()):
+            pairs.add((photos[one], photos[int(other)]))
+    for first, second in chain(shifted_frames(group_of), pieces(group_of)):
+        pairs |= {(first, second), (second, first)}
+    return sorted(pairs)
 
 
 def _thumbnail(photo: Path) -> FloatArray:

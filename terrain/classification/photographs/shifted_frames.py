@@ -21,12 +21,15 @@ _WINDOW = np.outer(np.hanning(SIDE_PX), np.hanning(SIDE_PX))
 
 
 def shifted_frames(group_of: Mapping[Path, str]) -> Iterator[tuple[Path, Path]]:
-    """Photographs of a folder with one shortly after that shows the same, and of another group.
+    """Photographs with one of another group shortly after that shows the same.
 
-    By phase correlation: shifts of up to a tenth of the image and small turns do not hide a scene.
-    Photographs that are not read are like none.
+    In order of their names, within each folder and of all folders together: a burst may have been
+    put to two terrains. By phase correlation: shifts of up to a tenth of the image and small turns
+    do not hide a scene. Photographs that are not read are like none.
     """
-    for _, photos in groupby(sorted(group_of), key=lambda photo: photo.parent):
+    by_folder = [list(of) for _, of in groupby(sorted(group_of), key=lambda photo: photo.parent)]
+    together = [sorted(group_of, key=lambda photo: (photo.name, photo))]
+    for photos in by_folder + (together if len(by_folder) > 1 else []):
         before: list[tuple[Path, AnyArray]] = []
         for photo in photos:
             phases = _phases(photo)

@@ -76,19 +76,24 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
     if contrary := [pair for pair in alike if label_of[pair[0]] != label_of[pair[1]]]:
         one, other = contrary[0]
         yield (
-            f"Note: {len(contrary)} of {len(photos)} photographs look like one with another label, "
-            f"such as {one} ({label_of[one]}) and {other} ({label_of[other]}): one scene cannot be "
-            "both, and names of either mean little. Move or delete the wrong one"
+            f"Note: {_count(contrary)} of {len(photos)} photographs look like one with another "
+            f"label, such as {one} ({label_of[one]}) and {other} ({label_of[other]}): one scene "
+            "cannot be both, and names of either mean little. Move or delete the wrong one"
         )
     if alike := [pair for pair in alike if pair not in contrary]:
         one, other = alike[0]
         apart = {label_of[one] for one, other in alike if scene_of[one] != scene_of[other]}
         yield (
-            f"Note: {len(alike)} of {len(photos)} photographs look like another one, such as {one} "
-            f"and {other}: copies, pieces, or frames of one scene. They are held out together; "
-            "what this check misses needs the same photo_id in manifest.csv"
+            f"Note: {_count(alike)} of {len(photos)} photographs look like another one, such as "
+            f"{one} and {other}: copies, pieces, or frames of one scene. They are held out "
+            "together; what this check misses needs the same photo_id in manifest.csv"
             + (f". All of {', '.join(sorted(apart))} would be one scene: no test" if apart else "")
         )
+
+
+def _count(pairs: list[tuple[Path, Path]]) -> int:
+    """Of photographs that look like another one."""
+    return len({one for one, _ in pairs})
 
 
 def _of_origins(patches: LabelledPatches) -> Iterator[str]:

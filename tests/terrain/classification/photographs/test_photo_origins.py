@@ -14,7 +14,7 @@ def photograph(tmp_path, rng):
     """Write one photograph and return its path."""
     pixels = rng.integers(0, 255, (40, 60, 3), dtype=np.uint8)
 
-    def write(name, size=(60, 40), quality=90, camera="", suffix=".jpg", lens=None):
+    def write(name, *, size=(60, 40), quality=90, camera="", suffix=".jpg", lens=None):
         exif = Image.Exif()
         if lens:
             exif.get_ifd(ExifTags.IFD.Exif).update(lens)
