@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
+from terrain.classification.photographs.opaque import opaque
 from terrain.classification.photographs.patches import LabelledPatches, LabelledPhoto, cut_patches
 from terrain.classification.photographs.trained_on import image_sum
 from terrain.images import read_image
@@ -57,7 +58,7 @@ def load_copies(
     """Read photographs and draw altered patches of each; the same input gives the same copies.
 
     What is drawn depends on the pixels of a photograph and the seed, not on its name or on the
-    other photographs. One that is smaller than a patch has no copies.
+    other photographs. One that is smaller than a patch, or transparent in part, has no copies.
 
     Parameters
     ----------
@@ -76,6 +77,8 @@ def load_copies(
         image = read_image(photo.path)
         content = image_sum(image)
         count = min(settings.per_photo, len(cut_patches(image, size_px, max(size_px // 2, 1))))
+        if opaque(photo.path) is not None:
+            count = 0
         rng = np.random.default_rng([settings.seed, int(content, 16)])
         copies.images.extend(altered(image, size_px, settings, rng) for _ in range(count))
         copies.labels.extend([photo.label] * count)

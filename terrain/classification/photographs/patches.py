@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.arrays import ByteImage
+from odometry.arrays import BoolArray, ByteImage
 from terrain.classification.photographs.manifest import photo_ids_of, read_manifest
+from terrain.classification.photographs.opaque import opaque
 from terrain.classification.photographs.photo_faults import check_classes
 from terrain.classification.photographs.thumbnails import thumbnail_text
 from terrain.classification.photographs.trained_on import TrainedOn, check_names, image_sum
@@ -140,6 +141,8 @@ def load_patches(
 ) -> LabelledPatches:
     """Read photographs and cut them to patches, each overlapping the next by half.
 
+    Patches with transparent pixels are left out.
+
     Parameters
     ----------
     photos : sequence of LabelledPhoto
@@ -151,13 +154,13 @@ def load_patches(
     Raises
     ------
     PatchError
-        If a class has no photograph of at least `size_px` x `size_px`.
+        If a class has no photograph of which `size_px` x `size_px` are opaque.
     ImageError
         If photographs cannot be read; all of them are counted.
     """
     patches = LabelledPatches()
     for photo, image in _read(photos):
-        cut = cut_patches(image, size_px, max(size_px // 2, 1))
+        cut = _opaque_patches(image, opaque(photo.path), size_px, max(size_px // 2, 1))
         if len(cut) > max_per_photo:
             cut = [cut[i] for i in np.linspace(0, len(cut) - 1, max_per_photo).astype(int)]
         if not cut:
@@ -173,9 +176,20 @@ def load_patches(
     for label in sorted(set(counts) - set(patches.labels)):
         raise PatchError(
             f"class '{label}': none of its {counts[label]} photographs is {size_px} x {size_px} "
-            "pixels or larger; choose a smaller patch size"
+            "pixels or larger, and opaque there; choose a smaller patch size"
         )
     return patches
+
+
+def _opaque_patches(
+    image: ByteImage, shows: BoolArray | None, size_px: int, stride_px: int
+) -> list[ByteImage]:
+    """Patches of what shows; all, where nothing is transparent."""
+    cut = cut_patches(image, size_px, stride_px)
+    if shows is None:
+        return cut
+    masks = cut_patches(255 * shows.astype(np.uint8), size_px, stride_px)
+    return [patch for patch, mask in zip(cut, masks, strict=True) if mask.all()]
 
 
 def _read(photos: Sequence[LabelledPhoto]) -> Iterator[tuple[LabelledPhoto, ByteImage]]:

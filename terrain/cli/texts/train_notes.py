@@ -32,7 +32,7 @@ def notes(
     if unread := unread_note(list(patches.sides_px), SUFFIXES):
         yield f"Note: {unread}"
     for path in patches.too_small:
-        yield f"left out, smaller than {size} x {size} pixels: {path}"
+        yield f"left out, smaller than {size} x {size} pixels, or transparent: {path}"
     if chooses_size:
         yield from _of_size(patches, size)
     yield from _of_groups(patches)
