@@ -94,6 +94,37 @@ def test_a_spectrum_that_falls_evenly_has_no_kink():
     assert kink(ends) == pytest.approx(2.0)
 
 
+def made(bends, finest, floor=0.0):
+    """Spectra of five photographs that fall by one a band, with these bends at five bands."""
+    falls = -1.0 + np.concatenate([[0.0], np.cumsum(bends)])
+    of_all = np.concatenate([[0.0], np.cumsum(falls)])
+    least_textured = floor + np.linspace(0.6, 0.0, 7)
+    return np.tile(np.stack([of_all - of_all[-1] + finest, least_textured]), (FEWEST, 1, 1))
+
+
+EVEN, ENDS, ENDS_COARSELY = (0.0,) * 5, (0, 0, 0, 1.5, 0), (0.0, 1.5, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("own", "others", "found"),
+    [
+        (made(ENDS, -1.0), made(EVEN, -1.0), LESS_SHARP),
+        (made(ENDS, 1.5), made(EVEN, -1.0), None),  # noise or detail is left
+        (made(ENDS, -1.0), made((0, 0, 0, 1.0, 0), -1.0), None),  # they end as well
+        (made((0, 0, 0, 0.9, 0), -1.0), made((0, 0, 0, 0.75, 0), -1.0), None),  # not far apart
+        (made((1.5, 0, 0, 0, 0), -1.0), made(EVEN, -1.0), None),
+        (made(ENDS_COARSELY, -1.0), made(EVEN, -1.0), None),
+        (made(ENDS, -1.0), made(ENDS_COARSELY, -1.0), None),
+        (made(EVEN, 3.0, floor=3.0), made(EVEN, 3.0, floor=1.0), NOISIER),
+        (made(EVEN, 3.0, floor=3.0), made(EVEN, 3.0, floor=1.8), None),
+        (made(EVEN, 1.0, floor=1.0), made(EVEN, -1.0, floor=-1.0), None),  # hardly noise
+    ],
+)
+def test_each_limit(own, others, found):
+    expected = {} if found is None else {"mud": found}
+    assert apart({"mud": own, "sand": others}) == expected
+
+
 def test_power_is_that_of_noise(rng):
     noise = np.clip(np.rint(rng.normal(128, 10, (300, 300))), 0, 255).astype(np.uint8)
     of_all, least_textured = spectrum(noise)

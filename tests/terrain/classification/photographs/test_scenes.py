@@ -61,7 +61,7 @@ def test_one_scene_with_two_labels_is_not_joined(folder):
     copy.write_bytes((folder / "sand/d.jpg").read_bytes())
     patches = with_scenes(load_patches(find_photos(folder), SIDE))
     scenes = dict(zip(patches.photos, patches.scenes, strict=True))
-    assert scenes[copy] == str(copy)
+    assert scenes[copy] not in {scenes[folder / "sand/d.jpg"], scenes[folder / "sand/b.png"]}
 
 
 class FittedError(Exception):
