@@ -25,7 +25,7 @@ MOST_PHOTOS = 50  # of a terrain
 
 # Of natural logarithms of power, but MOST
 FINEST, FINE = 5, 6  # bands where a terrain must have a kink, and where others have none
-KINK, KINK_APART = 0.8, 0.2  # of 19 real terrains and scenes as they are 0.7 at most
+KINK, KINK_APART = 0.8, 0.2  # of nine in ten real photographs 0.7 at most
 NOTHING = 1.0  # at the finest detail; noise of two grey levels has more
 WHITE, NOISE, NOISE_APART = -0.25, 1.4, 1.4  # 1.4: four times the power, of two grey levels
 MOST = 0.8  # of the photographs of a terrain
