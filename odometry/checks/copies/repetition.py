@@ -221,7 +221,7 @@ def _shift(trial: _Trial, source: FloatArray, period_s: float) -> tuple[float, f
     """Correlation of the changes with a source (S,) at the best whole row of delay, and that."""
     changes = np.diff(trial.values)
     of_source = np.diff(trial.sampled(trial.at_s, 0.0, trial.source_s, source))
-    reach = max(round(MOST_DELAY_S / period_s), 1)
+    reach = min(max(round(MOST_DELAY_S / period_s), 1), len(changes))
     padded = np.zeros(len(changes) + 2 * reach)
     padded[reach:-reach] = changes
     size = float(np.sqrt((changes @ changes) * (of_source @ of_source)))

@@ -1,11 +1,13 @@
 """A gyroscope and treads of which one was computed from the other are no two sensors."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from odometry import check_recording
+from odometry.checks.copies.repetition import repetition
 from tests.odometry.checks.drives import table, winding
 from tests.odometry.checks.faulty import gyroscope, put
 
@@ -133,3 +135,16 @@ def test_an_average_of_rows_is_a_copy():
 
 def findings_first(run):
     return check_recording(run).findings[0]
+
+
+def test_rows_stamped_at_arrival_need_no_more_memory_than_others():
+    """Most of them within a microsecond: the search for a delay was of millions of rows."""
+    run = winding(300)
+    stamps_s = run.odometry.stamps_s
+    arrived_s = np.floor(stamps_s / 0.25) * 0.25 + 1e-7 * np.arange(len(stamps_s))
+    rates = run.odometry["gyro_z"]
+    tracemalloc.start()
+    repetition(arrived_s, rates, arrived_s, rates[:, None] + 0.1)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 5e6
