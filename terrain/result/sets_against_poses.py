@@ -47,12 +47,18 @@ class SetAgainstPoses:
     @property
     def turns_otherwise(self) -> bool:
         """Whether the robot surely turned farther or less far than predicted."""
-        return abs(self.turn - 1) > max(TURNS, CERTAIN * self.turn_sd)
+        return _differs(self.turn, self.turn_sd, TURNS)
 
     @property
     def goes_otherwise(self) -> bool:
         """Whether the robot surely went farther or less far than predicted."""
-        return abs(self.way - 1) > max(WAY, CERTAIN * self.way_sd)
+        return _differs(self.way, self.way_sd, WAY)
+
+
+def _differs(ratio: float, sd: float, share: float) -> bool:
+    """Whether a ratio is surely more than 1 + share, or less than one over it."""
+    far = ratio > 1 + share or ratio * (1 + share) < 1
+    return far and abs(ratio - 1) > CERTAIN * sd
 
 
 def sentences(found: Sequence[SetAgainstPoses]) -> list[str]:
