@@ -178,7 +178,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "coarse_speeds": frozenset({"stuck_encoder", "treads_held"}),
     "position_unit": frozenset({"far_sensor"}),
     "position_axes": POSES | YAW | {"position_unit", "positions_stretched", "positions_mirrored"},
-    "positions_stretched": frozenset({"scale"}),
+    "positions_stretched": frozenset({"scale", "yaw_offset"}),  # axes that lean turn it, too
 }
 
 

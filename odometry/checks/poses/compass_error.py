@@ -11,6 +11,7 @@ from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend, changed
+from odometry.checks.poses.position_frame import position_frame
 from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.turns.heading_spans import HeadingSpans, heading_spans
 from odometry.run import Run
@@ -31,12 +32,15 @@ TIGHT = 0.9  # correlation
 # Windows within so much of either axis of a stretch. Where none is, it is extrapolated: on lanes
 # over two terrains, whose courses stay within 60 degrees.
 NEAR_RAD, LEAST_NEAR = np.radians(30), 10
+# By all windows at once; 1.05 at most in real recordings whose deviation is as small
+SLIGHTLY, SLIGHT_CERTAIN, SLIGHT_SD = 1.06, 5.0, 0.02
 
 
 def bent(evidence: Evidence) -> Iterator[Finding]:
     """A compass on iron, and a projection of the Earth that was forgotten."""
     yield from _yaw_bent(evidence)
-    yield from _stretched(evidence)
+    much = list(_stretched(evidence))
+    yield from much or _slightly_stretched(evidence)
 
 
 def _yaw_bent(evidence: Evidence) -> Iterator[Finding]:
@@ -144,6 +148,29 @@ def _stretched(evidence: Evidence) -> Iterator[Finding]:
         f"(without the cosine of the latitude), or x and y have different scales{turned}",
         "Convert positions by a projection (UTM, east and north in metres)",
         mend=_shortened(along_rad, ratio),
+    )
+
+
+def _slightly_stretched(evidence: Evidence) -> Iterator[Finding]:
+    """Less of it, on drives that tell it from slopes, arms and a yaw that is turned."""
+    if evidence.yaw_measured and evidence.heading is None:
+        return
+    frame = position_frame(evidence)
+    if frame is None or frame.ratio < SLIGHTLY or frame.ratio_sd > SLIGHT_SD:
+        return
+    if frame.ratio - 1 < SLIGHT_CERTAIN * frame.ratio_sd:
+        return
+    yield Finding(
+        "positions_stretched",
+        Level.WARNING,
+        f"the robot moves {frame.ratio:.3f} +- {frame.ratio_sd:.3f} times as far for each metre of "
+        f"tread travel along {np.degrees(frame.axis_rad):.0f} degrees of the frame of pose.csv as "
+        "across it, on all headings, beside what slopes and turns do",
+        "Positions are stretched along one axis (longitude by the cosine of another latitude), or "
+        "their axes are not at right angles; or the terrain, and with it the slip, is another "
+        "where the robot drives along this axis",
+        "Measure a known distance along both axes, and convert positions by a projection (UTM)",
+        mend=_shortened(frame.axis_rad, frame.ratio),
     )
 
 
