@@ -43,6 +43,7 @@ from odometry.checks.stamps.joined_recordings import joined_recordings, without_
 from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
 from odometry.checks.stamps.set_back import set_back
+from odometry.checks.stamps.short_delay import slightly_late
 from odometry.checks.stamps.silent_rows import silent_rows
 from odometry.checks.stamps.stamp_pace import stamp_pace
 from odometry.checks.stamps.stamps import stamps, unreadable_stamps
@@ -111,6 +112,7 @@ CHECKS: tuple[Check, ...] = (
     stepping_clocks,
     clock_offsets,
     explained_lags,
+    slightly_late,
     late_positions,
     poses,
     gyroscope,

@@ -1,31 +1,18 @@
-"""Poses whose stamps are late: by a delay that is given, or by one that is certain.
-
-Poses of the 19 recordings of data/motion that are not among the seven of the final evaluation
-are up to 0.2 s early against the gyroscope and at most 0.03 s late.
-"""
+"""Poses whose stamps are late: by a delay that is given, or by one that is certain."""
 
 from dataclasses import replace
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.late_positions import sure_lag
-from odometry.checks.stamps.timing import (
-    CERTAIN,
-    TOGETHER,
-    found_in,
-    lags_of,
-    pose_period_s,
-    timing,
-)
-from odometry.checks.statistics.lag import Lag
+from odometry.checks.stamps.short_delay import short_delay
+from odometry.checks.stamps.timing import found_in, lags_of, timing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.run import Run
 from odometry.table import Table
 
 FINDING, PARTS = "pose_late", {"yaw_late", "positions_late"}
-LEAST_LATE_S, LEAST_LATE_PERIODS = 0.05, 0.25  # a shorter delay is not reported by `check` either
-OF_GYROSCOPE = 0.5  # of a delay, by which treads may be late too; then it is the gyroscope's
 Moved = tuple[Run, tuple[FilterEvent, ...]]
 
 
@@ -81,7 +68,8 @@ def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:
     run, lags = evidence.run, lags_of(evidence)
     found = list(found_in(evidence, lags))
     if not found:
-        return _short_delay_s(evidence, lags)
+        short = short_delay(evidence, lags)
+        return None if short is None else short.seconds
     late = [finding for finding in found if finding.name == FINDING]
     if not late or late[0].mend is None or FINDING not in named:
         return None
@@ -91,19 +79,6 @@ def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:
     delay_s = float(run.pose.stamps_s[0] - mended.pose.stamps_s[0])
     remains = any(finding.name == FINDING for finding in timing(Evidence(mended)))
     return delay_s if delay_s > 0 and not remains else None
-
-
-def _short_delay_s(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> float | None:
-    """A delay too short for `check`, which may come early as well as late, of late poses alone."""
-    lag, of_treads = lags.get(("pose", "gyroscope")), lags.get(("treads", "gyroscope"))
-    if lag is None or lag.together < TOGETHER:
-        return None
-    least_s = max(LEAST_LATE_S, LEAST_LATE_PERIODS * pose_period_s(evidence), CERTAIN * lag.sigma_s)
-    if lag.seconds < least_s:
-        return None
-    if of_treads is not None and of_treads.seconds > OF_GYROSCOPE * lag.seconds:
-        return None
-    return lag.seconds
 
 
 def _moved(run: Run, pose: Table, delay_s: float, text: str) -> Moved:

@@ -7,6 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding
 from odometry.checks.imu.gyroscope import held_s
 from odometry.checks.stamps.late_stamps import (
@@ -61,6 +62,7 @@ def found_in(evidence: Evidence, lags: dict[tuple[str, str], Lag]) -> Iterator[F
     yield from _late(evidence, lags, late)
 
 
+@once
 def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
     """Lags of the first of two sensors behind the second, of those that can be estimated."""
     signals = headings_by_sensor(evidence)
