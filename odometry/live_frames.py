@@ -2,6 +2,7 @@
 
 import math
 from bisect import bisect_right, insort
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ from odometry.sensors import SILENT_S, Gyroscope, step_integrals
 
 UNKNOWN_SPEEDS = np.full(2, math.nan)
 AHEAD_S = 5.0  # of the clock: one message alone is not believed
+FEWEST, MANY = 5, 0.1  # messages of a kind that were too late, and their share, that are said
+KINDS = {"tread_speeds_m_s": "treads", "image": "images", "pose": "poses", "velocity": "velocities"}
 
 
 class LiveFrames:
@@ -63,6 +66,8 @@ class LiveFrames:
         self._parts: dict[float, dict[str, Any]] = {}  # by stamp
         self._row = -1
         self._speeds = UNKNOWN_SPEEDS
+        self._counts = Counter[str]()
+        self._late_s: dict[str, tuple[int, float, float]] = {}  # count, sum and most by kind
 
     def treads(self, stamp_s: float, left_m_s: float, right_m_s: float) -> None:
         """Tread speeds, in force from a stamp on."""
@@ -100,6 +105,21 @@ class LiveFrames:
             due_s = min(due_s, max(self._gyroscope.latest_s, silent_since_s))
         return self._until(due_s)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Kinds of messages of which many were dropped as too late, and by how much they were."""
+        found = []
+        for name, (count, sum_s, most_s) in self._late_s.items():
+            if count < max(FEWEST, MANY * self._counts[name]):
+                continue
+            found.append(
+                f"{count} of {self._counts[name]} {KINDS[name]} were dropped: they came "
+                f"{sum_s / count:.2f} s behind treads and gyroscope in the mean, {most_s:.2f} s at "
+                f"most, and wait_s is {self._wait_s:g} s. Wait for longer (answers come as much "
+                "later); or their stamps are of another clock"
+            )
+        return tuple(found)
+
     def rest(self) -> list[Frame]:
         """All frames that are left, where no message will come any more."""
         return self._until(self._clock_s + AHEAD_S)
@@ -113,8 +133,13 @@ class LiveFrames:
 
     def _add(self, stamp_s: float, name: str, value: FloatArray | ByteImage) -> None:
         parts = self._parts.get(stamp_s, {})
+        self._counts[name] += 1
         if not self._given_s < stamp_s < math.inf or name in parts:
             self.too_late += 1
+            if stamp_s < self._given_s:
+                count, sum_s, most_s = self._late_s.get(name, (0, 0.0, 0.0))
+                late_s = self._clock_s - stamp_s
+                self._late_s[name] = count + 1, sum_s + late_s, max(most_s, late_s)
             return
         if stamp_s not in self._parts:
             insort(self._stamps_s, stamp_s)

@@ -176,3 +176,18 @@ def test_poses_keep_time_where_treads_have_stopped():
     assert given[-1].stamp_s > 30.0 - 2 * AHEAD_S
     assert np.all(np.diff([frame.stamp_s for frame in given]) == 1.0)
     assert frames.too_late == 0
+
+
+def test_images_that_come_late_are_counted_with_their_delay():
+    frames = LiveFrames(wait_s=0.1, has_gyroscope=False)
+    for row in range(100):
+        stamp_s = row / 10
+        frames.treads(stamp_s, 0.5, 0.5)
+        if row >= 20 and row % 2 == 0:
+            frames.image(stamp_s - 2.0, np.zeros((4, 4), np.uint8))
+        frames.ready()
+    (note,) = frames.notes
+    assert note.startswith("40 of 40 images were dropped: they came 2.00 s behind treads")
+    assert frames.too_late == 40
+    assert frames.pose(9.85, 0.0, 0.0) is None  # on time
+    assert len(frames.notes) == 1
