@@ -20,6 +20,7 @@ from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.likeness import Likeness
 from terrain.config import Config
+from terrain.live.checked_so_far import CheckedSoFar
 from terrain.live.images_so_far import ImagesSoFar
 from terrain.live.live_feel import LiveFelt
 from terrain.live.live_source import live_feel, live_source
@@ -129,8 +130,10 @@ class LiveOdometry:
         self._name_notes = name_notes(initial, classifier, parameters)
         self._gaps = GapsSoFar()
         self._noticed = NoticedSoFar(robot.track_width, parameters.terrains)
+        self._checked = CheckedSoFar(robot, lever_m)
         self._lost_s, self._lost_until_s = 0.0, 0.0
-        self._images = ImagesSoFar((0, 0) if camera is None else camera.image_size)
+        wanted = None if self._watcher is None or camera is None else camera.image_size
+        self._images = ImagesSoFar(wanted)
         self._estimate: Estimate | None = None
         self._odometer: RunningOdometer | None = None
 
@@ -164,8 +167,9 @@ class LiveOdometry:
 
         Terrains that the parameter set lacks, images unlike the training photographs, of another
         size than the camera's, grey before a model in colour or all without a name, `feel_note`,
-        time without tread speeds, and what the filter noticed that misleads it, the latest of each
-        kind.
+        a drive without images, time without tread speeds, what the filter noticed that misleads it,
+        the latest of each kind, and what the check of recordings says of the latest two minutes,
+        once there are 60, 120, 240 s ... of frames: such a call takes some tenths of a second.
         """
         likeness = None if self.likeness is None else self.likeness.note
         lost = (
@@ -175,7 +179,8 @@ class LiveOdometry:
         )
         said = likeness, *self._images.notes(), self.feel_note, lost if self._lost_s else ""
         noticed = self._noticed.notes(self._estimate) if self._estimate else ()
-        return tuple(filter(None, (*self._name_notes, *said, *noticed)))
+        checked = self._checked.notes()
+        return tuple(filter(None, (*self._name_notes, *said, *noticed, *checked)))
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.
@@ -207,6 +212,8 @@ class LiveOdometry:
             self._estimate = stepped(self._ekf, self._source, self._estimate, frame)
             self._odometer.step(self._estimate)
         self._noticed.add(self._estimate)
+        self._checked.add(frame)
+        self._images.drive(frame)
         odometer = (self._odometer.pose, self._odometer.covariance, self._odometer.twist)
         terrain, seen, event = self._estimate.terrain, None, None
         if self._watcher is not None:

@@ -12,6 +12,7 @@ from odometry.parameters import ParameterSet
 from odometry.run import Robot, Run
 from terrain.camera.camera import Camera
 from terrain.images import read_image
+from terrain.live.images_so_far import ImagesSoFar
 from terrain.live.live_odometry import LiveOdometry
 from tests.terrain.live.test_live_odometry import SET
 
@@ -131,3 +132,34 @@ def test_time_without_tread_speeds_is_noted():
     (note,) = live.notes
     assert note.startswith("no tread speeds came for 6.1 s in all while a tread turned")
     assert "until 9.00 s" in note
+
+
+def test_a_camera_that_falls_silent_is_noted_after_a_way_without_an_image():
+    def notes_after(way_m, size, first=True):
+        seen = ImagesSoFar(size)
+        for row in range(round(way_m / 0.1) + 1):
+            image = np.zeros((4, 4), np.uint8) if row % 5 == 0 and first and row <= 20 else None
+            seen.drive(Frame(row / 10, np.array([0.9, 1.1]), row, None, image))
+        return seen.notes()
+
+    assert notes_after(6.0, (4, 4)) == []
+    (note,) = notes_after(8.0, (4, 4))
+    assert note.startswith(
+        "no image came for the last 6 m of wheel travel (the last one at 2.00 s)"
+    )
+    (note,) = notes_after(8.0, (4, 4), first=False)
+    assert note.startswith("no image came for the last 8 m of wheel travel: the camera")
+    assert notes_after(8.0, None) == []
+
+
+def test_a_live_run_notes_that_no_image_came(across_run, classifier):
+    run = Run.read(across_run)
+    camera = Camera.from_table(run.settings["camera"])
+    live, still = (LiveOdometry(run.robot, camera=camera, model=of) for of in (classifier, None))
+    for row in range(120):
+        for one in (live, still):
+            one.step(Frame(row / 20, np.array([1.0, 1.0]), row, None, None))
+    assert [note.split(":")[0] for note in live.notes] == [
+        "no image came for the last 6 m of wheel travel"
+    ]
+    assert still.notes == ()
