@@ -4,11 +4,11 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 
-# Columns whose angle has a smaller sine, whose lengths are further apart, or whose squares vanish
-# or overflow are left to a decomposition, which takes many times as long. Of the rest the normal
-# equations give twelve digits.
+# Columns whose angle has a smaller sine, whose lengths are further apart, or of whose squares two
+# multiplied vanish or overflow, are left to a decomposition, which takes many times as long. Of the
+# rest the normal equations give twelve digits.
 LEAST_SINE, LEAST_LENGTH = 1e-2, 1e-4
-SQUARES = (1e-200, 1e100)
+SQUARES = (1e-140, 1e100)
 
 ORDINARY, ROUNDS = 0.9, 3  # share of the rows that are fitted, those that are explained best
 
