@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from odometry.arrays import FloatArray
+from odometry.checks.copies.carried_poses import carried_poses
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.evidence.once import once
@@ -46,6 +47,7 @@ def computed_poses(evidence: Evidence) -> Iterator[Finding]:
     of_track &= at.way is None or at.way.explained > NO_WAY
     rolls = at.rolls and evidence.run.truth is None
     if not of_track and not rolls:
+        yield from carried_poses(evidence)
         return
     seen, source = [], "wheel odometry itself, computed from these treads"
     if rolls and at.way is not None:
