@@ -156,7 +156,7 @@ def _slightly_stretched(evidence: Evidence) -> Iterator[Finding]:
     if evidence.yaw_measured and evidence.heading is None:
         return
     frame = position_frame(evidence)
-    if frame is None or frame.ratio < SLIGHTLY or frame.ratio_sd > SLIGHT_SD:
+    if frame is None or not SLIGHTLY < frame.ratio < STRETCHED or frame.ratio_sd > SLIGHT_SD:
         return
     if frame.ratio - 1 < SLIGHT_CERTAIN * frame.ratio_sd:
         return
