@@ -12,13 +12,14 @@ from odometry.estimation.estimate import IcrBelief
 from odometry.models.catalogue import ICR_NAMES
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.random_effects import between_run_variance, dissent, largest_between_run_variance
-from odometry.run import UNKNOWN
+from odometry.run import UNKNOWN, Robot
+from odometry.set_of_robot import other_width
 
 MUCH_SURER = 2.0  # times less variance
 
 
 def learned_parameters(
-    before: ParameterSet, replay: Replay, run_name: str, track_width_m: float | None = None
+    before: ParameterSet, replay: Replay, run_name: str, robot: Robot | None = None
 ) -> ParameterSet:
     """The parameter set with the ICRs that the filter held when it last left each terrain.
 
@@ -34,10 +35,12 @@ def learned_parameters(
     replay : Replay
     run_name : str
         Named as the source.
-    track_width_m : float, optional
-        Of the robot: [vehicle] gets it, where it has none.
+    robot : Robot, optional
+        [vehicle] gets its track width, where it has none. Of a set of another robot only what was
+        learned is handed on.
     """
-    terrains = dict(before.terrains)
+    of_another_robot = robot is not None and bool(other_width(before, robot))
+    terrains = {} if of_another_robot else dict(before.terrains)
     names, astride, accepted = (
         np.array(replay.terrains, dtype=object),
         replay.is_astride,
@@ -55,8 +58,8 @@ def learned_parameters(
             source = f"learned by terrain-odometry from {poses} poses of {run_name}"
             effects = before.terrains[name].effects if name in before.terrains else ()
             terrains[name] = replace(_table(left, source), effects=effects)
-    robot = {} if track_width_m is None else {"track_width": track_width_m}
-    return ParameterSet(terrains, robot | dict(before.vehicle))
+    own = {} if robot is None else {"track_width": robot.track_width}
+    return ParameterSet(terrains, own if of_another_robot else own | dict(before.vehicle))
 
 
 def _is_worth_keeping(table: TerrainParameters | None, came: IcrBelief, left: IcrBelief) -> bool:

@@ -166,7 +166,7 @@ def run_odometry(
     used, second = is_used_by_filter(reference_name), None
     if used:
         second = _second_replay(run, estimator, result, causal, show_progress=show_progress)
-    learned = learned_parameters(parameters, result, run.name, run.robot.track_width)
+    learned = learned_parameters(parameters, result, run.name, run.robot)
     unknown_s = new_spans(differing)
     learned = learned_apart(run, estimator, result, unknown_s, learned, causal=causal)
     return RunResult(

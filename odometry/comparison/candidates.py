@@ -15,6 +15,7 @@ from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
 from odometry.models.base import KinematicModel
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.set_of_robot import set_notes
 from odometry.windows.stretches import Stretches
 from odometry.windows.windows import Windows
 
@@ -188,13 +189,15 @@ class GivenParameters(Candidate):
                 "set where both are one terrain)"
             )
         where = f"{self.name}: [terrain.{split.terrain}]"
+        robot = split.held_out[0].run.robot
+        here = ParameterSet({split.terrain: table}, self.parameters.vehicle)
         return Predictor(
-            model_of(table, split.held_out[0].run.robot, where),
+            model_of(table, robot, where),
             table.values,
             table.covariance_order,
             table.covariance,
             table.source,
-            notes=(AS_GIVEN,),
+            notes=(AS_GIVEN, *set_notes(here, robot)),
         )
 
 

@@ -15,6 +15,7 @@ from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import TerrainSource, can_start, started, stepped
 from odometry.run import UNKNOWN, Robot
 from odometry.running_odometer import RunningOdometer
+from odometry.set_of_robot import set_notes
 from odometry.windows.gaps import GapsSoFar
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
@@ -127,7 +128,10 @@ class LiveOdometry:
         self._ekf = IcrEkf(robot.track_width, parameters, config.filter, lever_m=lever_m)
         self._at_pose = at_pose
         classifier = None if self._watcher is None else self._watcher.classifier
-        self._name_notes = name_notes(initial, classifier, parameters)
+        self._set_notes = [
+            *set_notes(parameters, robot),
+            *name_notes(initial, classifier, parameters),
+        ]
         self._gaps = GapsSoFar()
         self._noticed = NoticedSoFar(robot.track_width, parameters.terrains)
         self._checked = CheckedSoFar(robot, lever_m)
@@ -180,7 +184,7 @@ class LiveOdometry:
         said = likeness, *self._images.notes(), self.feel_note, lost if self._lost_s else ""
         noticed = self._noticed.notes(self._estimate) if self._estimate else ()
         checked = self._checked.notes()
-        return tuple(filter(None, (*self._name_notes, *said, *noticed, *checked)))
+        return tuple(filter(None, (*self._set_notes, *said, *noticed, *checked)))
 
     def step(self, frame: Frame) -> LiveStep | None:
         """Take in the next frame; None as long as nothing can start.

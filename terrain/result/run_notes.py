@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.run import UNKNOWN
+from odometry.set_of_robot import set_notes
 from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, colourless_note
 from terrain.classification.likeness.noticed_alterations import unnoticed
 from terrain.classification.no_ground import no_ground_note
@@ -31,6 +32,7 @@ def run_notes(result: RunResult) -> list[str]:
     """
     classifier = None if result.watcher is None else result.watcher.classifier
     return [
+        *set_notes(result.parameters, result.run.robot),
         *name_notes(result.initial_terrain, classifier, result.parameters),
         *_unnamed(result),
         *([] if result.watcher is None else _images(result.watcher)),

@@ -12,14 +12,15 @@ from odometry.effects.tables import model_of
 from odometry.parameters import TerrainParameters
 from odometry.run import Run
 from odometry.sensors import YawRate
-from odometry.windows.run_inputs import inputs_of
-from terrain.result.run_result import RunResult
-from terrain.result.sets_against_poses import (
+from odometry.windows.motion_ratios import (
     FEWEST_WINDOWS,
     HORIZON_M,
     LEAST_TURN_RAD,
-    SetAgainstPoses,
+    MotionRatios,
 )
+from odometry.windows.run_inputs import inputs_of
+from terrain.result.run_result import RunResult
+from terrain.result.sets_against_poses import SetAgainstPoses
 
 LONGEST_S = 20.0  # of a window: a bias of the gyroscope turns longer ones by too much
 MOST = 6.0  # times as far, or less far: beyond, the gyroscope has another unit, or sign
@@ -85,7 +86,8 @@ def _compared(
         if same_side and (both > 1 / MOST).all() and (both < MOST).all():
             turn, turn_sd = min(alone, beside_bias, key=lambda of: abs(of[0] - 1))
     nan = float("nan")
-    return SetAgainstPoses(name, len(ends), turn, turn_sd, nan, nan, "gyroscope")
+    ratios = MotionRatios(turn, turn_sd, nan, nan)
+    return SetAgainstPoses(name, len(ends), ratios, "gyroscope")
 
 
 def _ratio(predicted: Sequence[FloatArray], measured: FloatArray) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from odometry.frames import Frame
 from odometry.learned_parameters import learned_parameters
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from odometry.pipeline import replay
-from odometry.run import Run
+from odometry.run import Robot, Run
 
 BEFORE = ParameterSet(
     {
@@ -88,6 +88,14 @@ def test_a_robot_that_stands_or_drives_straight_on_teaches_no_new_terrain(make_r
 
 
 def test_the_set_says_the_track_width_that_exports_need(result):
-    assert learned_parameters(BEFORE, result, "r", 0.6).vehicle["track_width"] == 0.6
+    assert learned_parameters(BEFORE, result, "r", Robot(0.6)).vehicle["track_width"] == 0.6
     stated = ParameterSet(BEFORE.terrains, {"track_width": 0.5})
-    assert learned_parameters(stated, result, "r", 0.6).vehicle == {"track_width": 0.5}
+    assert learned_parameters(stated, result, "r", Robot(0.52)).vehicle == {"track_width": 0.5}
+
+
+def test_of_a_set_of_another_robot_only_what_was_learned_is_handed_on(result):
+    other = ParameterSet(BEFORE.terrains, {"name": "another", "track_width": 1.2})
+    learned = learned_parameters(other, result, "r", Robot(0.6))
+    assert learned.vehicle == {"track_width": 0.6}
+    assert "never" not in learned.terrains
+    assert all(table.source.startswith("learned") for table in learned.terrains.values())

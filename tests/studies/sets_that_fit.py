@@ -67,7 +67,7 @@ def main():
         for other in sets.keys() - {name}:
             result = SimpleNamespace(run=run, parameters=sets[other], replay=replay)
             by_poses, by_gyroscope = (
-                [one.turns_otherwise for one in compare(result)]
+                [one.ratios.turns_otherwise for one in compare(result)]
                 for compare in (sets_against_poses, sets_against_gyroscope)
             )
             counts[any(by_poses), any(by_gyroscope)] += 1

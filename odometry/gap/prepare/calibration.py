@@ -73,6 +73,8 @@ def calibrated(
 ) -> Calibration:
     """Identify the base on calibration runs, and the noise; or take the given values as they are.
 
+    The noise is that of the model as identified here, with what is given of the robot itself.
+
     Raises
     ------
     GapError
@@ -85,12 +87,15 @@ def calibrated(
         )
     free = np.array([not parameter.known for parameter in model.parameters])
     gyroscope = all(scene.reported_turns is not None for scene in scenes)
-    uncertain = Uncertain(Base(model, model.pack(model.guess(robot)), robot), free, True, gyroscope)
-    noise, known = STARTS_WITH, None
+    known = {each.name for each in model.parameters if each.known}
+    stated = {name: value for name, value in (given or {}).items() if name in known}
+    start = model.pack({**model.guess(robot), **stated})
+    uncertain = Uncertain(Base(model, start, robot), free, True, gyroscope)
+    noise, before = STARTS_WITH, None
     for _ in range(ROUNDS):
         uncertain, _ = _fit(uncertain, scenes, [whitening(scene, noise) for scene in scenes])
         left = [all_residuals(uncertain.base, (), s) for s in scenes]
-        noise = known = estimated_noise(scenes, left, known)
+        noise = before = estimated_noise(scenes, left, before)
     noise, gyro_expected = _doubted(noise, config)
     whiteners = [whitening(scene, noise) for scene in scenes]
     uncertain, information = _fit(uncertain, scenes, whiteners)

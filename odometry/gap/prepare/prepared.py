@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.given_base import check_given
 from odometry.gap.prepare.held_out import Apart, held_out_pieces
 from odometry.gap.prepare.outliers import Outliers
 from odometry.gap.prepare.rounding import rounding_notes
@@ -71,11 +72,18 @@ def prepared(
 
     `base` is the model, and its parameters where they are given. Where nothing is to be held out,
     pieces of the measured runs are.
+
+    Raises
+    ------
+    GapError
+        As `check_given` and `calibrated`.
     """
     model, given = base
     robot = robot_of([*calibration, *measured, *holdout])
     headings = headed([*measured, *calibration, *holdout])
     measured, calibration, holdout = dealt(headings.runs, len(measured), len(calibration))
+    if given is not None and not headings.found:
+        check_given(model, given, calibration)
     config = for_positions(for_chains(config, headings.runs), headings)
     known_scenes, whole, held = alike(
         [scene_of(run, config) for run in calibration],

@@ -1,7 +1,7 @@
 """The base model of a gap: by its name or from a parameter set, and what is uncertain of it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import read_parameters
 from odometry.run import Run
+from odometry.set_of_robot import other_width
 
 LONGEST_LATENCY_S = 1.0
 LARGEST_BIAS_RAD_S = 0.5
@@ -104,13 +105,14 @@ def believed_model(
     Raises
     ------
     GapError
-        If the set has no such terrain, or effects already.
+        If the set has no such terrain, effects already, or is of another robot.
     ParameterError
         If there is no such model, or the file is no parameter set.
     """
     if Path(name).suffix != ".toml":
         return model_named(name), None
-    terrains = read_parameters(name).terrains
+    parameters = read_parameters(name)
+    terrains = parameters.terrains
     wanted = terrain or next((r.terrain for r in runs if r.terrain in terrains), None)
     if wanted is None and len(terrains) == 1:
         wanted = next(iter(terrains))
@@ -121,6 +123,9 @@ def believed_model(
     table = terrains[wanted]
     if table.effects:
         raise GapError(f"{name}: [terrain.{wanted}] has effects already; expected a plain model")
+    other = [other_width(replace(parameters, terrains={wanted: table}), r.robot) for r in runs]
+    if any(other):
+        raise GapError(f"{name}: {max(other)}. Identify the model on the calibration runs")
     if table.model not in MODELS:
         raise ParameterError(f"{name}: the model {table.model!r} cannot be computed")
     return MODELS[table.model], table.values

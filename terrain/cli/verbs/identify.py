@@ -118,6 +118,7 @@ def identify(
     from odometry.identification.profile import with_profiles
     from odometry.identification.start import SolverConfig
     from odometry.parameters import read_parameters, write_parameters
+    from odometry.set_of_robot import other_width
     from terrain.cli.outputs import WHOLE, comment
     from terrain.cli.recordings import read_runs
 
@@ -127,9 +128,12 @@ def identify(
     made = claimed(out, picture, ros)
     solver_config = SolverConfig(loss=loss, starts=starts, seed=seed)
     runs = read_runs(folders, span)
+    taken = read_parameters(model) if Path(model).suffix == ".toml" else model
+    if not isinstance(taken, str) and (other := other_width(taken, runs[0].robot)):
+        click.echo(f"Note: {other}; what the set states of its robot is held", err=True)
     found = identify_runs(
         runs,
-        read_parameters(model) if Path(model).suffix == ".toml" else model,
+        taken,
         fixed=assignments(fix),
         released=free,
         terrain=terrain,

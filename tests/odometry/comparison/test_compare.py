@@ -46,6 +46,14 @@ def test_models_that_are_the_same_cannot_be_distinguished_and_a_wrong_one_is(
         assert "may have been identified on these very runs" in remark
 
 
+def test_a_set_in_another_unit_is_said(grass, quick, bench, tmp_path):
+    in_mm = {"alpha": 1.0, "b_hat": 900.0}
+    file = bench.write_set(tmp_path / "mm.toml", "icr_symmetric", in_mm)
+    comparison = compare(grass, [file], config=quick)
+    (summary, *_) = comparison.summaries_at(comparison.places[0])
+    assert any("900 m apart" in one for one in comparison.remarks_at(comparison.places[0], summary))
+
+
 def test_parameter_sets_are_those_of_identify(grass, quick):
     """With intervals of few degrees of freedom taken into the covariance."""
     compared = compare(grass, ["icr_symmetric"], config=quick)

@@ -10,7 +10,7 @@ from odometry.errors import GapError
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import calibrated
 from odometry.models.icr import Icr
-from odometry.models.symmetric import IcrSymmetric
+from odometry.models.symmetric import DifferentialDrive, IcrSymmetric
 from odometry.windows.dense import dense_windows_of
 
 TRUE = np.array([0.45, -0.42, 0.02, 1.0, 1.0, 0.0])  # the robot of the scenes; no latency
@@ -79,6 +79,15 @@ def test_given_values_are_believed_as_they_are(calibrate):
     identified = calibrate(600)
     assert known.noise == identified.noise
     assert len(known.held_back) == len(identified.held_back) == GapConfig().held_back
+
+
+def test_noise_is_that_of_what_is_given_of_the_robot_itself(calibrate):
+    """An ideal drive as wide as the robot turns: its own width of run.toml is no noise."""
+    noise = {
+        width: calibrate(600, model=DifferentialDrive(), given={"track_width": width}).noise
+        for width in (0.87, 0.55)
+    }
+    assert noise[0.87].wander_rad < 0.1 * noise[0.55].wander_rad
 
 
 def test_every_window_is_held_back_once_with_a_base_of_the_others(each):

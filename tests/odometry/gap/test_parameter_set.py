@@ -65,6 +65,15 @@ def test_a_terrain_that_is_not_there_is_refused_with_those_there_are(runs, set_o
         believed_model(set_of(grass=ICRS, sand=ICRS), runs, terrain)
 
 
+def test_a_set_of_another_robot_is_refused(runs, set_of):
+    width_m = runs[0].robot.track_width
+    file = set_of(grass=ICRS + f"[vehicle]\ntrack_width = {1.05 * width_m}\n")
+    assert believed_model(file, runs)[0].name == "icr"
+    other = set_of(grass=ICRS + f"[vehicle]\ntrack_width = {1.2 * width_m}\n")
+    with pytest.raises(GapError, match=r"of a robot of track width .*on the calibration runs"):
+        believed_model(other, runs)
+
+
 def test_effects_on_the_ground_taken_are_refused(runs, set_of):
     file = set_of(grass=ICRS + EFFECT.format("grass"), sand=ICRS)
     with pytest.raises(GapError, match=r"\[terrain\.grass\] has effects already"):

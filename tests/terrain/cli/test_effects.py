@@ -143,6 +143,15 @@ def test_identify_holds_the_effects_and_finds_the_rest(folder, files, tmp_path):
     assert again.exit_code == 0, again.output
 
 
+@pytest.mark.usefixtures("no_report")
+def test_identify_says_of_which_robot_a_set_is(folder, files, tmp_path):
+    files[0].write_text('[vehicle]\nname = "wide"\ntrack_width = 3.0\n' + TRUE)
+    options = ["--horizon", "0.5", "--starts", "1", "--out", tmp_path / "found.toml"]
+    answer = invoke(identify, folder, "--model", files[0], *options)
+    assert answer.exit_code == 0, answer.output
+    assert "Note: the parameter set is of a robot of track width 3 m (wide)" in answer.output
+
+
 def test_an_unknown_effect_is_a_known_error_of_all_three(folder, tmp_path):
     wrong = tmp_path / "wrong.toml"
     wrong.write_text(WITH_EFFECTS.replace('"lever_arm"', '"long_arm"'))

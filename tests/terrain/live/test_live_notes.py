@@ -29,6 +29,12 @@ def test_terrains_that_the_set_lacks_are_noted_before_the_first_frame(across_run
     assert note.endswith("'Boards' there is 'boards' here: give both one name")
 
 
+def test_a_set_of_another_robot_is_noted():
+    live = LiveOdometry(Robot(0.4), parameters=replace(SET, vehicle={"track_width": 1.2}))
+    (note,) = live.notes
+    assert note.startswith("the parameter set is of a robot of track width 1.2 m")
+
+
 def test_images_of_another_size_have_no_label_and_one_note(across_run, classifier):
     run = Run.read(across_run)
     camera = Camera.from_table(run.settings["camera"])

@@ -5,15 +5,26 @@ from types import SimpleNamespace
 import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import Robot
 from terrain.classification.answer import COLOURLESS, ONE_CHANNEL
 from terrain.classification.likeness.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
 from terrain.result.run_notes import event_lines, run_notes
 
+TABLE = TerrainParameters("icr", {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0})
+
 
 def result(
-    initial="gravel", tables=("gravel",), classes=None, *, refused=0, events=(), source="camera"
+    initial="gravel",
+    tables=("gravel",),
+    classes=None,
+    *,
+    refused=0,
+    events=(),
+    source="camera",
+    width_m=0.4,
 ):
     watcher = (
         None
@@ -26,10 +37,12 @@ def result(
     )
     return SimpleNamespace(
         initial_terrain=initial,
-        parameters=SimpleNamespace(terrains=dict.fromkeys(tables)),
+        parameters=ParameterSet(dict.fromkeys(tables, TABLE), {"track_width": 0.4}),
         watcher=watcher,
         source=source,
-        run=SimpleNamespace(pose=None, yaw_rate=None, terrain=None, began_s=1000.0),
+        run=SimpleNamespace(
+            robot=Robot(width_m), pose=None, yaw_rate=None, terrain=None, began_s=1000.0
+        ),
         replay=SimpleNamespace(
             innovations_squared=np.array([np.nan] * 5 + [1.0] * (10 + refused)),
             accepted=np.array([False] * 5 + [True] * 10 + [False] * refused),
@@ -96,6 +109,11 @@ def test_grey_images_before_a_model_in_colour_are_counted():
     of.watcher.image_labels[2].reason = ONE_CHANNEL
     (hint,) = [one for one in run_notes(of) if "grey" in one]
     assert hint.startswith("2 of 3 images have no name, since they are grey")
+
+
+def test_a_set_of_another_robot_is_said():
+    (note,) = run_notes(result(width_m=0.5))
+    assert note.startswith("the parameter set is of a robot of track width 0.4 m")
 
 
 def test_where_most_images_are_unknown_the_path_is_to_be_compared():

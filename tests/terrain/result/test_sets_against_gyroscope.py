@@ -38,7 +38,7 @@ def said(of):
 def test_parameters_that_fit_are_not_contradicted(bias_rad_s):
     found = sets_against_gyroscope(driven({}, bias_rad_s=bias_rad_s))
     assert [one.terrain for one in found] == ["a", "b"]
-    assert all(np.isnan(one.turn) or abs(one.turn - 1) < 0.1 for one in found)
+    assert all(np.isnan(one.ratios.turn) or abs(one.ratios.turn - 1) < 0.1 for one in found)
     assert said(driven({}, bias_rad_s=bias_rad_s)) == []
     assert said(driven({"y_left": 0.5, "y_right": -0.47})) == []
 
@@ -49,7 +49,7 @@ def test_a_width_of_another_terrain_is_named(poses, bias_rad_s):
     of = driven({"y_left": 0.9, "y_right": -0.84}, poses=poses, bias_rad_s=bias_rad_s)
     (sentence,) = said(of)
     assert "by the gyroscope the robot turned" in sentence
-    assert sets_against_gyroscope(of)[1].turn == pytest.approx(2.0, abs=0.1)
+    assert sets_against_gyroscope(of)[1].ratios.turn == pytest.approx(2.0, abs=0.1)
     assert "'b'" in sentence
     assert "Learn them with identify" in sentence
 

@@ -59,7 +59,7 @@ def test_parameters_that_fit_are_not_contradicted(sigma_m):
 def test_a_width_of_another_terrain_is_named():
     found = sets_against_poses(result({"y_left": 0.9, "y_right": -0.84}))
     (sentence,) = sentences(found)
-    assert found[1].turn == pytest.approx(2.0, abs=0.05)
+    assert found[1].ratios.turn == pytest.approx(2.0, abs=0.05)
     assert "turned 2.0" in sentence
     assert "'b'" in sentence
 

@@ -1,0 +1,65 @@
+"""Whether a parameter set is of this robot, and in the units of this program."""
+
+from math import isfinite
+
+from odometry.estimation.terrain_beliefs import ICR_FORM_MODELS, icr_form
+from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.run import Robot
+
+SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
+# Between the ICRs, in track widths; printed sets have up to 8.1 (Baril 2020, concrete)
+LEAST_WIDTHS, MOST_WIDTHS = 0.5, 20.0
+LEAST_GAIN = 0.1  # metres of the robot for each metre of its treads
+IDEAL = "differential_drive"  # whose track width may be an effective one
+
+
+def set_notes(parameters: ParameterSet, robot: Robot) -> list[str]:
+    """Sentences on what cannot be of this robot; none where nothing is odd.
+
+    Examples
+    --------
+    >>> import odometry
+    >>> from odometry.set_of_robot import set_notes
+    >>> grass = odometry.TerrainParameters("icr", {"y_left": 350.0, "y_right": -330.0, "x_icr": 0})
+    >>> (note,) = set_notes(odometry.ParameterSet({"grass": grass}), odometry.Robot(0.4))
+    >>> note.split(":")[0]
+    '[terrain.grass]'
+    """
+    other = other_width(parameters, robot)
+    odd = (odd_values(name, table, robot) for name, table in parameters.terrains.items())
+    return [note for note in (other, *odd) if note]
+
+
+def other_width(parameters: ParameterSet, robot: Robot) -> str:
+    """A sentence where a set states another track width than the robot has; else empty."""
+    tables = [table for table in parameters.terrains.values() if table.model != IDEAL]
+    stated = [of.get("track_width") for of in (parameters.vehicle, *(t.values for t in tables))]
+    for width in stated:
+        if isinstance(width, float | int) and abs(width / robot.track_width - 1) > SAME_WIDTH:
+            named = parameters.vehicle.get("name")
+            return (
+                f"the parameter set is of a robot of track width {width:g} m"
+                f"{f' ({named})' if named else ''}, and this one has {robot.track_width:g} m: how "
+                "terrain turns one robot says nothing of another"
+            )
+    return ""
+
+
+def odd_values(name: str, table: TerrainParameters, robot: Robot) -> str:
+    """A sentence where ICRs or slip factors are of no robot of this size; else empty."""
+    if table.model not in ICR_FORM_MODELS:
+        return ""
+    form = icr_form(table, f"[terrain.{name}]")
+    apart_m, gain = float(form.icrs[0] - form.icrs[1]), float(form.alphas.mean())
+    widths = apart_m / robot.track_width
+    if not LEAST_WIDTHS <= widths <= MOST_WIDTHS:
+        return (
+            f"[terrain.{name}]: its ICRs lie {apart_m:.3g} m apart, {widths:.1f} track widths of "
+            "this robot: they are in another unit than metres, or of another robot"
+        )
+    if isfinite(gain) and gain < LEAST_GAIN:
+        return (
+            f"[terrain.{name}]: a metre of the treads moves the robot by {gain:.2g} m: they are "
+            "slip factors of speeds in another unit than m/s"
+        )
+    return ""

@@ -1,0 +1,44 @@
+"""Parameters that are given for the base, against the calibration runs."""
+
+import pytest
+
+from odometry.errors import GapError
+from odometry.gap.config import GapConfig
+from odometry.gap.prepare.given_base import check_given
+from odometry.gap.prepare.prepared import prepared
+from odometry.models.icr import Icr
+
+TRUE = {"y_left": 0.45, "y_right": -0.42, "x_icr": 0.02, "alpha_left": 1.0, "alpha_right": 1.0}
+MILLIMETRES = {name: 1000 * TRUE[name] for name in ("y_left", "y_right", "x_icr")}
+
+
+@pytest.fixture(scope="module")
+def run(make_scene):
+    return make_scene(600, duration_s=80.0, top_m_s=0.5).run
+
+
+@pytest.mark.parametrize(
+    "changed", [{}, {"x_icr": 0.0}, {"y_left": 0.5, "y_right": -0.5}, {"alpha_left": 0.95}]
+)
+def test_what_fits_or_nearly_fits_is_taken(run, changed):
+    check_given(Icr(), TRUE | changed, [run])
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"y_left": 0.9, "y_right": -0.84}, r"turned 2\.0\d \+- 0\.\d\d times as far"),
+        ({"alpha_left": 0.1, "alpha_right": 0.1}, r"turned 9\.9\d .* and went 9\.5\d \+-"),
+        (MILLIMETRES, r"turned (99\d|100\d)\.\d\d \+-"),
+    ],
+)
+def test_what_is_of_another_robot_or_unit_is_refused(run, changed, said):
+    with pytest.raises(GapError, match=said):
+        check_given(Icr(), TRUE | changed, [run])
+
+
+def test_the_workflow_asks(run, make_scene):
+    measured = make_scene(601, duration_s=80.0, top_m_s=0.5).run
+    base = Icr(), TRUE | {"y_left": 0.9, "y_right": -0.84}
+    with pytest.raises(GapError, match="calibrate on runs that the set fits"):
+        prepared([measured], [run], [], base, GapConfig())
