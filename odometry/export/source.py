@@ -187,7 +187,8 @@ def _is_result(content: Any) -> bool:
             well_formed = all(isinstance(each, dict) for each in (*errors.values(), *switches))
             stamps = [each.get("stamp_s") for each in switches if isinstance(each, dict)]
             numbers = all(isinstance(stamp_s, int | float) for stamp_s in stamps)
-            return well_formed and numbers and None not in {_number(horizon_m), _number(travel_m)}
+            travels = travel_m == 0 or _number(travel_m) is not None  # 0 of one that stands
+            return well_formed and numbers and travels and _number(horizon_m) is not None
     return False
 
 

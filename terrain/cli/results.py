@@ -23,7 +23,10 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
         for trajectory, score in result.scores.items():
             rows.append((f"{name}: {trajectory}", *error_cells(score.to_table())))
     if not rows:
-        click.echo("There is no pose.csv or truth.csv to compare the odometer with.")
+        click.echo(
+            "There is nothing to compare the odometer with: no pose.csv and truth.csv, or fewer than "
+            "two poses within odometry.csv."
+        )
         return
     first = next(iter(results.values()))
     click.echo(

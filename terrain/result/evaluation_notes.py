@@ -120,7 +120,7 @@ def worse_at_the_end(off_m: Mapping[str, float]) -> list[str]:
         f"{_capital(words)} ends farther off than the ideal differential drive: "
         f"{off_m[name]:.2f} against {ideal_m:.2f} m."
         for name, words in JUDGED_AT_THE_END.items()
-        if off_m.get(name, 0.0) > ideal_m
+        if round(off_m.get(name, 0.0), 2) > round(ideal_m, 2)
     ]
 
 

@@ -1,5 +1,7 @@
 """Parquet tables and trajectory files of a result, read again."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -56,3 +58,10 @@ def test_a_folder_without_a_result_is_refused(tmp_path, content, words):
         (tmp_path / "other" / "result.json").write_text(content)
     with pytest.raises(ExportError, match=words):
         read_export_source(tmp_path / "other")
+
+
+def test_a_robot_that_stood_is_exported(tmp_path):
+    folder = write_results(tmp_path / "results")
+    stood = json.loads((folder / "result.json").read_text()) | {"wheel_travel_m": 0.0, "errors": {}}
+    (folder / "result.json").write_text(json.dumps(stood))
+    assert len(read_export_source(folder).trajectory("odometer")) == len(STAMPS_S)

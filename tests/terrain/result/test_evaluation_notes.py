@@ -16,6 +16,7 @@ def scores(**errors):
 def test_nothing_is_said_where_the_odometer_is_best():
     assert simple_is_better(scores(differential_drive=0.3, gyroscope=0.05, odometer=0.04)) == []
     assert worse_at_the_end({"differential_drive": 3.0, "odometer": 1.0, "estimate": 0.1}) == []
+    assert worse_at_the_end({"differential_drive": 0.002, "estimate": 0.0049}) == []  # it stood
 
 
 def test_the_best_of_the_simple_ones_is_named():
