@@ -1,11 +1,13 @@
 """Errors of the odometry of another program on a run that was replayed, by the same rules.
 
-It is evaluated at the stamps of the reference that lie within its own, none of them in a gap, and
-placed at the filter's estimate at the first of these, where our odometer starts as well. Nothing
-else is fitted. Its scale and its axes stay as they are, and are only reported.
+It is evaluated at the stamps of the reference that lie within its own, none of them in a gap; where
+its poses are less than half as frequent as those of the reference, at its own, since a straight
+line from one to the next is no odometry's error. It is placed at the filter's estimate at the first
+of these, where our odometer starts as well. Nothing else is fitted. Its scale and its axes stay as
+they are, and are only reported.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +24,8 @@ from odometry.geometry import se2
 from odometry.trajectory import Trajectory
 
 LONGEST_GAP_S = 1.0  # between two poses; no straight line is drawn over a longer one
+SPARSE = 2.0  # periods of the reference
+LOST = 3.0  # periods of its own: after a longer gap its frame may be another
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,9 @@ class OtherScore:
     ours : Score
         Of our odometer at the same stamps, from the same start.
     share : float
-        Part of the reference's stamps at which it is evaluated.
+        Part of the reference's stamps at which it is evaluated; of sparse ones, that it spans.
+    own_stamps : int
+        At how many stamps of its own it is evaluated; 0 at those of the reference.
     scale : float
         By which its path would have to grow to fit the reference best.
     turned_rad : float
@@ -71,6 +77,7 @@ class OtherScore:
     share: float
     scale: float
     turned_rad: float
+    own_stamps: int = 0
 
 
 def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
@@ -81,6 +88,10 @@ def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
     TrajectoryError
         If it holds fewer than two stamps of the reference.
     """
+    share = float(trajectory.covers(judge.reference.stamps_s).mean())
+    own = _is_sparse(trajectory, judge.reference)
+    longest_s = max(LONGEST_GAP_S, LOST * _period_s(trajectory)) if own else np.inf
+    judge = _at_own_stamps(trajectory, judge) if own else judge
     stamps_s = judge.reference.stamps_s
     held = held_stamps(trajectory, stamps_s) & judge.believed.covers(stamps_s)
     held &= judge.odometer.covers(stamps_s)
@@ -95,12 +106,34 @@ def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
         placed.at(stamps_s[held]).poses[:, :2], judge.reference.poses[held, :2]
     )
     return OtherScore(
-        _score(placed, judge, held),
-        _score(_placed(judge.odometer, judge, held), judge, held),
-        float(held.mean()),
+        _score(placed, judge, held, longest_s),
+        _score(_placed(judge.odometer, judge, held), judge, held, longest_s),
+        share if own else float(held.mean()),
         scale,
         turned_rad,
+        int(held.sum()) if own else 0,
     )
+
+
+def _is_sparse(trajectory: Trajectory, reference: Trajectory) -> bool:
+    """Whether poses come less than half as often as those of a reference that holds some."""
+    within = np.count_nonzero(held_stamps(reference, trajectory.stamps_s))
+    return within > 1 and _period_s(trajectory) > SPARSE * _period_s(reference)
+
+
+def _period_s(trajectory: Trajectory) -> float:
+    stamps_s = trajectory.stamps_s
+    return float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
+
+
+def _at_own_stamps(trajectory: Trajectory, judge: Judge) -> Judge:
+    """The judge at the stamps of a trajectory that the reference holds."""
+    reference = judge.reference
+    stamps_s = trajectory.stamps_s[held_stamps(reference, trajectory.stamps_s)]
+    columns = (*reference.poses.T, judge.travel_m)
+    *poses, travel_m = (np.interp(stamps_s, reference.stamps_s, each) for each in columns)
+    at_own = Trajectory(stamps_s, np.stack(poses, axis=-1))
+    return replace(judge, reference=at_own, travel_m=travel_m)
 
 
 def held_stamps(trajectory: Trajectory, stamps_s: FloatArray) -> BoolArray:
@@ -134,9 +167,10 @@ def _placed(trajectory: Trajectory, judge: Judge, held: BoolArray) -> Trajectory
     return Trajectory(moved.stamps_s, np.column_stack([places, moved.poses[:, 2]]))
 
 
-def _score(trajectory: Trajectory, judge: Judge, held: BoolArray) -> Score:
+def _score(trajectory: Trajectory, judge: Judge, held: BoolArray, longest_s: float) -> Score:
     """Errors at held stamps; windows lie within stretches of these, none across a gap."""
-    edges = np.flatnonzero(np.diff(held.astype(int))) + 1
+    breaks = np.diff(judge.reference.stamps_s) > longest_s
+    edges = np.flatnonzero((np.diff(held.astype(int)) != 0) | breaks) + 1
     stretches = [part for part in np.split(np.arange(len(held)), edges) if held[part[0]]]
     found = [_relative(trajectory, judge, part) for part in stretches]
     relative = RelativeErrors(

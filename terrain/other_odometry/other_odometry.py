@@ -12,7 +12,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.config import block_from_table
 from odometry.errors import OdometryError
-from odometry.evaluation.other_odometry import LONGEST_GAP_S, Judge, OtherScore, score_other
+from odometry.evaluation.other_odometry import LONGEST_GAP_S, SPARSE, Judge, OtherScore, score_other
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import Score
 from odometry.io.csv_table import read_csv_table
@@ -56,9 +56,10 @@ def other_errors(
     Returns
     -------
     dict
-        Errors as of result.json, with `share` of the reference's stamps, `scale`, `turned_deg`,
-        `notes`, and `odometer`: the errors of ours at the same stamps. No numbers where its
-        poses have a fault that the notes name, `error` alone where something cannot be evaluated.
+        Errors as of result.json, with `share` of the reference's stamps, `own_stamps`, `scale`,
+        `turned_deg`, `notes`, and `odometer`: the errors of ours at the same stamps. No numbers
+        where its poses have a fault that the notes name, `error` alone where something cannot be
+        evaluated.
     """
     kept = sorted((Path(run_path) / FOLDER).glob("*.csv")) if run_path else []
     files = {file.stem: file for file in kept} | dict(given)
@@ -172,6 +173,7 @@ def _table(found: OtherScore, doubts: Sequence[str]) -> dict[str, Any]:
     notes = [*filter(None, doubts), *_notes(found)]
     return found.score.to_table() | {
         "share": found.share,
+        "own_stamps": found.own_stamps,
         "scale": _finite(found.scale),
         "turned_deg": _finite(degrees(found.turned_rad)),
         "notes": notes,
@@ -182,7 +184,13 @@ def _table(found: OtherScore, doubts: Sequence[str]) -> dict[str, Any]:
 def _notes(found: OtherScore) -> list[str]:
     """What the errors hide: stamps that are missing, a scale, axes that point elsewhere."""
     notes = []
-    if found.share < 1:
+    if found.own_stamps:
+        notes.append(
+            f"evaluated at its own {found.own_stamps} stamps, since the reference is more than "
+            f"{SPARSE:g} times as frequent; they span {100 * found.share:.1f} % of that. The "
+            "row of our odometer below it is of the same stamps"
+        )
+    elif found.share < 1:
         notes.append(
             f"evaluated at {100 * found.share:.1f} % of the reference's stamps: the others lie "
             f"outside of it or in a gap above {LONGEST_GAP_S:g} s; the row of our odometer below "

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from odometry.arrays import FloatArray
 from odometry.evaluation.other_odometry import Judge
 from odometry.trajectory import Trajectory
 from terrain.other_odometry.shared_turns import (
@@ -40,7 +41,7 @@ def of_another_drive(trajectory: Trajectory, judge: Judge) -> str:
 
 
 def of_the_reference(trajectory: Trajectory, judge: Judge) -> str:
-    """A note where positions are those of the reference, from any origin, else an empty text."""
+    """A note where positions are those of the reference in any frame, else an empty text."""
     stamps, of_reference_s = (
         np.round(each.stamps_s, STAMP_DIGITS) for each in (trajectory, judge.reference)
     )
@@ -48,13 +49,20 @@ def of_the_reference(trajectory: Trajectory, judge: Judge) -> str:
     own, known = trajectory.poses[rows, :2], judge.reference.poses[of_reference, :2]
     if len(rows) < FEWEST_COMPARED or np.ptp(known, axis=0).max() < MOVED_M:
         return ""
-    if np.ptp(own - known, axis=0).max() > SAME_M:
+    if not _same_shape(own, known):
         return ""
     return (
         f"its positions are those of the reference within {1000 * SAME_M:g} mm: it is the "
         "reference, or was made of it, and its errors measure nothing. Give poses that were made "
         "without it"
     )
+
+
+def _same_shape(own: FloatArray, known: FloatArray) -> bool:
+    """Whether positions (K, 2) are others, moved and turned as a whole."""
+    a, b = (np.asarray((each - each.mean(axis=0)) @ [1, 1j]) for each in (own, known))
+    turn = np.exp(1j * np.angle(np.vdot(a, b)))
+    return bool(np.abs(a * turn - b).max() <= SAME_M)
 
 
 def _likeness(trajectory: Trajectory, other: Trajectory) -> float:

@@ -143,7 +143,7 @@ def _rows(name: str, run: str, result: dict[str, Any]) -> list[tuple[str, ...]]:
             rows.append((name, run, f"{other} failed: {errors['error']}", *empty))
             continue
         rows.append((name, run, other, against, *error_cells(errors)))
-        if errors["share"] < 1:
+        if errors["share"] < 1 or errors["own_stamps"]:
             same = f"odometer, stamps of {other}"
             rows.append((name, run, same, against, *error_cells(errors["odometer"])))
     return rows

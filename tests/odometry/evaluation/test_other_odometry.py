@@ -92,6 +92,27 @@ def test_nothing_is_judged_in_a_gap_or_across_it(judge):
     assert found.score.median_position_m < 7
 
 
+@pytest.mark.parametrize("every", [3, 4, 8, 20])  # 0.75 to 5 s
+def test_sparse_poses_are_judged_at_their_own_stamps(judge, every):
+    """Exact ones have no error; lines from one to the next would cut bends by 0.06 m at 1 s."""
+    sparse = reckoned().at(STAMPS_S[1:-1:every] + 0.125)
+    found = score_other(sparse, judge)
+    assert found.own_stamps == len(sparse)
+    assert found.share > 0.85
+    assert found.score.mean_translation_per_m < 2e-3
+    assert found.score.windows == found.ours.windows > 5
+    assert found.ours.mean_translation_per_m > 5e-3
+
+
+def test_no_window_of_sparse_poses_lies_across_a_loss(judge):
+    kept = np.append(np.arange(0, 81, 4), np.arange(121, 201, 4))
+    poses = reckoned().poses[kept]
+    poses[STAMPS_S[kept] > 25] += [7, 0, 0]
+    found = score_other(Trajectory(STAMPS_S[kept], poses), judge)
+    assert found.score.mean_translation_per_m == pytest.approx(0, abs=1e-9)
+    assert found.score.windows == found.ours.windows > 20
+
+
 def test_held_stamps_by_hand():
     poses = np.zeros((4, 3))
     found = held_stamps(

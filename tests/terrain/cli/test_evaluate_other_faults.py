@@ -78,12 +78,16 @@ def test_poses_that_never_move_are_named(winding):
     assert "it never moves" in result["notes"][0]
 
 
-@pytest.mark.parametrize(("off_m", "named"), [(0.0, True), (0.01, False)])
-def test_the_reference_itself_measures_nothing(winding, tmp_path, off_m, named):
-    """With another origin and fewer digits, as programs write it; not what is a little off."""
+@pytest.mark.parametrize(
+    ("off_m", "turned_rad", "named"), [(0.0, 0.0, True), (0.0, 2.0, True), (0.01, 0.0, False)]
+)
+def test_the_reference_itself_measures_nothing(winding, tmp_path, off_m, turned_rad, named):
+    """In another frame, with fewer digits, as programs write it; not what is a little off."""
     kept = read_csv_table(winding / "results" / "reference.csv", ["t", "x", "y", "yaw"])
     off = off_m * np.sin(kept.stamps_s)
-    rows = zip(kept.stamps_s, kept["x"] + 5.0 + off, kept["y"] - 2.0, kept["yaw"], strict=True)
+    place = (kept["x"] + off + 1j * kept["y"]) * np.exp(1j * turned_rad) + 5.0 - 2.0j
+    yaw = kept["yaw"] + turned_rad
+    rows = zip(kept.stamps_s, place.real, place.imag, yaw, strict=True)
     lines = [",".join(f"{cell:.4f}" for cell in row) for row in rows]
     file = tmp_path / "slam.csv"
     file.write_text("\n".join(["t,x,y,yaw", *lines]) + "\n")
