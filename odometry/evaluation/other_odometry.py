@@ -117,7 +117,7 @@ def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
 
 def _is_sparse(trajectory: Trajectory, reference: Trajectory) -> bool:
     """Whether poses come less than half as often as those of a reference that holds some."""
-    within = np.count_nonzero(held_stamps(reference, trajectory.stamps_s))
+    within = int(held_stamps(reference, trajectory.stamps_s).sum())
     return within > 1 and _period_s(trajectory) > SPARSE * _period_s(reference)
 
 
