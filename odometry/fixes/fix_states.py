@@ -12,6 +12,11 @@ NO_FIX = frozenset({"v", "void", "no fix", "no_fix", "nofix", "invalid", "false"
 # The least number that is a fix: NavSatFix has -1 for none; receivers count kinds of fix with 2
 # and 3 for two and three dimensions; NMEA's quality is 0 for none
 LEAST = {"navsat": 0, "kind": 2, "quality": 1, "flag": 1}
+# The best first; errors of single fixes are a hundred times as large, and a change is a jump
+SOLUTIONS = (
+    *("fix", "float", "ppp", "dgps", "sbas", "pps", "single"),
+    *("simulated", "manual", "estimated"),
+)
 MOST_KINDS = 6  # of fixes: a column with more is none of kinds
 MOST_NAVSAT = 2  # of the status of NavSatFix: with larger numbers it is a kind of fix
 
@@ -27,6 +32,22 @@ def no_fix(found: FixFile, state: Named) -> BoolArray:
     if kind == "navsat" and np.nanmax(values, initial=0) > MOST_NAVSAT:
         kind = "kind"
     return np.asarray(values < LEAST.get(kind, 0))
+
+
+def lesser(found: FixFile, state: Named, kept: BoolArray) -> tuple[BoolArray, str]:
+    """Rows (N,) of a lesser kind of solution than the most frequent one, and why they are left out.
+
+    Of logs whose kinds are known: `state.says` is "solution".
+    """
+    if state.says != "solution":
+        return np.zeros_like(kept), ""
+    cells = np.array(found.cells[state.column])
+    ranks = {kind: rank for rank, kind in enumerate(SOLUTIONS)}
+    counts = Counter(cells[kept].tolist())
+    usual = min(counts, key=lambda kind: (-counts[kind], ranks.get(kind, len(ranks))))
+    worse = [kind for kind in counts if ranks.get(kind, len(ranks)) > ranks.get(usual, len(ranks))]
+    words = " and ".join(f"{kind!r} in {counts[kind]}" for kind in worse)
+    return np.isin(cells, worse) & kept, f"of a lesser kind than {usual!r} ({words})"
 
 
 def kinds(found: FixFile, state: Named, kept: BoolArray) -> str:

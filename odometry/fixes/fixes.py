@@ -10,8 +10,10 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.errors import TrajectoryError
 from odometry.fixes.degrees import far_away, in_degrees, rounded
 from odometry.fixes.fix_file import FixFile, read_fix_file
-from odometry.fixes.fix_states import kinds, no_fix
+from odometry.fixes.fix_states import kinds, lesser, no_fix
 from odometry.fixes.local_metres import on_earth, zeros_within_deg
+from odometry.fixes.nmea import read_nmea
+from odometry.fixes.rtklib import read_rtklib
 from odometry.table import Table
 
 # A log that is faster than its receiver holds each place for nearly the same number of rows; a
@@ -41,7 +43,7 @@ class Fixes:
 
 
 def read_fixes(file: Path, odometry: Table | None = None) -> Fixes | None:
-    """Read places of a CSV file with latitude and longitude; None of any other file.
+    """Read places of CSV with latitude and longitude, RTKLIB or NMEA; None of any other file.
 
     Parameters
     ----------
@@ -55,7 +57,7 @@ def read_fixes(file: Path, odometry: Table | None = None) -> Fixes | None:
         Naming file, row and column of what cannot be read; if no row is a place, or most stamps
         go back.
     """
-    found = read_fix_file(Path(file))
+    found = read_rtklib(Path(file)) or read_nmea(Path(file)) or read_fix_file(Path(file))
     if found is None:
         return None
     losses: list[str] = []
@@ -69,6 +71,10 @@ def read_fixes(file: Path, odometry: Table | None = None) -> Fixes | None:
         kept &= ~none
     if not kept.any():
         raise TrajectoryError(f"{file}: no row has a fix: {'; '.join(losses)}")
+    for state in found.columns.states:
+        worse, why = lesser(found, state, kept)
+        _lose(losses, worse, why, found)
+        kept &= ~worse
     angles[kept], unit = in_degrees(angles[kept], found.columns.latitude.says, found.file)
     for wrong, why in _no_places(angles, kept):
         _lose(losses, wrong, why, found)

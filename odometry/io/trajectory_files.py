@@ -136,7 +136,8 @@ def format_of(file: Path) -> str:
         known = "; ".join(f"{name}: {one.about}" for name, one in FORMATS.items())
         raise TrajectoryError(
             f"{file}: the first row {row.strip()[:60]!r} is of no known format; expected {known}; "
-            "or, as --pose of `import`, CSV whose header names latitude, longitude and a stamp"
+            "or, as --pose of `import`, CSV whose header names latitude, longitude and a stamp, "
+            "`.pos` of RTKLIB, or NMEA with GGA"
         )
     return found
 

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from functools import partial
 
 import cv2
 import numpy as np
@@ -151,23 +152,34 @@ def _of_runs(folder):
         yield reader_of(
             f"{name}.csv", folder / f"{name}.csv", text.encode(), text_changed, lambda: _use(folder)
         )
-    yield _of_fixes(folder / "gnss.csv")
+    yield from _of_fixes(folder)
     yield reader_of(
         "run.toml", folder / "run.toml", RUN.encode(), text_changed, lambda: _use(folder)
     )
 
 
-def _of_fixes(file):
+def _of_fixes(folder):
+    csv = [f"{100 * i},3,48.10000{i},11.5000{i},51{i}.5" for i in range(8)]
+    pos = [f"2026/11/30 10:00:0{i}.000 48.10000{i} 11.5000{i} 51{i}.5 1 9" for i in range(8)]
+    texts = {
+        "gnss.csv": ["time_ms,fix_type,latitude,longitude,altitude", *csv],
+        "gnss.pos": ["%  GPST latitude(deg) longitude(deg) height(m) Q ns", *pos],
+        "gnss.nmea": [
+            "$GPRMC,083559.00,A,4717.11437,N,00833.91522,E,0.004,77.52,091202,,,A*57",
+            "$GPGGA,092725.00,4717.11399,N,00833.91590,E,1,08,1.01,499.6,M,48.0,M,,*5B",
+        ],
+    }
+    for name, lines in texts.items():
+        file = folder / name
+        text = "\n".join(lines) + "\n"
+        yield reader_of(name, file, text.encode(), text_changed, partial(_use_fixes, file))
+
+
+def _use_fixes(file):
     odometry = Table(file, {"t": np.arange(8) * 0.1}, np.arange(8))
-    rows = [f"{100 * i},3,48.10000{i},11.5000{i},51{i}.5" for i in range(8)]
-    text = "\n".join(["time_ms,fix_type,latitude,longitude,altitude", *rows]) + "\n"
-
-    def use():
-        table = read_pose_table("pose", file, {}, odometry)
-        assert np.isfinite(np.stack([table.columns[name] for name in "txy"])).all()
-        assert (np.diff(table.columns["t"]) > 0).all()
-
-    return reader_of("latitude and longitude", file, text.encode(), text_changed, use)
+    table = read_pose_table("pose", file, {}, odometry)
+    assert np.isfinite(np.stack([table.columns[name] for name in "txy"])).all()
+    assert (np.diff(table.columns["t"]) > 0).all()
 
 
 def _use(folder):

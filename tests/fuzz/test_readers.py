@@ -16,7 +16,7 @@ def all_readers(tmp_path_factory):
 
 NAMES = [
     *("odometry.csv", "pose.csv", "velocity.csv", "images.csv", "truth.csv", "imu.csv"),
-    *("latitude and longitude", "run.toml"),
+    *("gnss.csv", "gnss.pos", "gnss.nmea", "run.toml"),
     *("parameter set", "velocity modes", "traction modes", "config", "camera", "vehicle", "TUM"),
     *("image, png", "image, jpg", "image, tiff", "image, bmp"),
     *("camera_info", "camchain", "camera XML", "transforms", "marks.csv"),

@@ -43,8 +43,8 @@ def pose_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--pose",
         type=FILE,
-        help="Poses of another program (TUM, KITTI, EuRoC), or latitude and longitude (CSV), as "
-        "pose.csv.",
+        help="Poses of another program (TUM, KITTI, EuRoC), or latitude and longitude (CSV, "
+        "RTKLIB, NMEA), as pose.csv.",
     )
     @click.option("--truth", type=FILE, help="The same as truth.csv: for scoring alone.")
     @trajectory_options
