@@ -54,7 +54,7 @@ def odd_values(name: str, table: TerrainParameters, robot: Robot) -> str:
     widths = apart_m / robot.track_width
     if not LEAST_WIDTHS <= widths <= MOST_WIDTHS:
         return (
-            f"[terrain.{name}]: its ICRs lie {apart_m:.3g} m apart, {widths:.1f} track widths of "
+            f"[terrain.{name}]: its ICRs lie {apart_m:.4g} m apart, {widths:.1f} track widths of "
             "this robot: they are in another unit than metres, or of another robot"
         )
     if isfinite(gain) and gain < LEAST_GAIN:

@@ -38,6 +38,7 @@ OUT, SAID = Path("out"), Path("said.txt")
 LATE = 0.8  # of the time; from here on every other kill
 COLUMNS = ("ended first", "nothing", "old", "new", "unfinished", "torn", "mixed", "differ")
 SYNTHESISE = "synthesise --zone grass --zone gravel --zone-length 2 --image-rate 1 --out"
+FORMATS = "--to ros --to tum --to mcap --to parquet"
 INPUTS = (
     "simulate --out yard --duration 60 --seed 1 --max-speed 0.6",
     "simulate --out hill --duration 45 --seed 2 --slope 8 --drive figure_eight --max-speed 0.6",
@@ -46,6 +47,7 @@ INPUTS = (
     f"{SYNTHESISE} photos",
     "identify-modes grass asphalt --out modes.toml",
     "train photos/patches --preset chen2023 --out terrain.model",
+    "run yard --out driven",
 )
 VERBS = {  # a command, and what gives another result of it
     "run": ("run photos --model terrain.model --out out/r", "--no-vision"),
@@ -55,6 +57,9 @@ VERBS = {  # a command, and what gives another result of it
     "gap": ("gap hill --calibration yard --out out/g", "--horizon-s 1.5"),
     "modes": ("modes grass --models modes.toml --out out/m", "--sure 0.7"),
     "synthesise": (f"{SYNTHESISE} out/s", "--image-rate 2"),
+    "simulate": ("simulate --duration 25 --seed 3 --out out/s", "--slope 3"),
+    "compare": ("compare yard hill --model icr_symmetric --out out/c", "--from 20"),
+    "export": (f"export driven {FORMATS} --out out/e", "--cell 0.7"),
 }
 
 

@@ -1,6 +1,7 @@
 """`terrain-odometry export`: results in the formats of the programs that use them."""
 
 import importlib
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -76,6 +77,8 @@ def export(
       terrain-odometry export results --to ros --to mcap --terrain grass --out exported
     """
     from odometry.export.source import read_export_source
+    from odometry.run import Robot
+    from odometry.set_of_robot import set_notes
     from terrain.cli.outputs import claim_folder
     from terrain.cli.results import print_written
 
@@ -89,6 +92,12 @@ def export(
     )
     for one in exported.edited:
         click.echo(f"Warning: {one}; it is exported as it is now", err=True)
+    if "ros" in formats and exported.track_width_m is not None:
+        notes = set_notes(exported.parameters, Robot(exported.track_width_m))
+        for note in notes:
+            click.echo(f"Warning: {note}", err=True)
+        lines = "".join(f"# {note}\n" for note in notes)
+        exported = replace(exported, comment=exported.comment + lines)
     with output.writing() as part:
         for name in dict.fromkeys(formats):
             _writer(name)(exported, part)

@@ -85,6 +85,16 @@ def test_the_track_width_that_is_given_counts(parameters, tmp_path):
     assert "multiplier: 1.25 " in (tmp_path / "out" / "ros.yaml").read_text()
 
 
+def test_a_set_in_millimetres_is_said_there_and_in_the_file(parameters, tmp_path):
+    parameters.write_text(
+        SET.replace("0.5\nx_icr", "500.0\nx_icr").replace("= 0.5\ny_r", "= 500.0\ny_r")
+    )
+    answer = call(parameters, "--to", "ros", "--out", tmp_path / "out")
+    (note,) = [line for line in answer.stderr.splitlines() if line.startswith("Warning: ")]
+    assert "its ICRs lie 1000 m apart, 2000.0 track widths" in note
+    assert f"# {note.removeprefix('Warning: ')}\n" in (tmp_path / "out" / "ros.yaml").read_text()
+
+
 def test_what_was_made_from_is_in_the_manifest(finished, tmp_path):
     """The sum is of the result, not of its figures."""
     call(finished, "--to", "tum", "--out", tmp_path / "out")
