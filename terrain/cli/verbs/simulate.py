@@ -171,7 +171,8 @@ def simulate(
 
     Wheels or track rollers slide under a rigid body with inertia, load transfer and gravity on
     slopes. The run has noisy odometry (tread speeds, attitude, yaw rate, accelerations), poses,
-    and the truth. `identify --model contact` finds its friction again where it drives on slopes.
+    and the truth. Where it drives on slopes, `identify --model contact` finds its friction to about
+    a tenth, which its intervals do not hold: that model has Coulomb friction and no lag.
 
     \b
     Example:
