@@ -81,7 +81,7 @@ def plot_against_horizon(
     Parameters
     ----------
     axes : Axes
-        Both axes become logarithmic.
+        Both axes become logarithmic, that of values where one is above zero.
     curves : Mapping of name to (horizons_m, values)
         (H,) each.
     styles : Mapping of name to LineStyle
@@ -90,13 +90,14 @@ def plot_against_horizon(
         draw_line(axes, horizons_m, values, name, styles[name])
         axes.plot(horizons_m, values, "o", color=styles[name].colour, markersize=3)
     axes.set_xscale("log")
-    axes.set_yscale("log")
+    if any((np.asarray(values) > 0).any() for _, values in curves.values()):
+        axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     ticks = sorted({float(h) for horizons_m, _ in curves.values() for h in np.asarray(horizons_m)})
     axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_minor_locator(NullLocator())
     plain = FuncFormatter(lambda value, _: f"{value:g}")
     axes.xaxis.set_major_formatter(plain)
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(plain)
     axes.yaxis.set_minor_formatter(NullFormatter())
     axes.grid(visible=True, axis="y")

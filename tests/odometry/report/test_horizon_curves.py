@@ -15,3 +15,11 @@ def test_lines_go_through_the_values_and_every_horizon_is_named(axes):
         (line,) = [line for line in axes.lines if line.get_label() == name]
         np.testing.assert_allclose(line.get_xydata().T, [x, y])
     assert [label.get_text() for label in axes.get_xticklabels()] == ["0.5", "2", "10"]
+
+
+def test_errors_that_are_none_or_unknown_are_drawn_without_a_warning(axes):
+    horizons = np.array([0.5, 2.0])
+    curves = {"a": (horizons, np.full(2, np.nan)), "$b^$": (horizons, np.zeros(2))}
+    plot_against_horizon(axes, curves, STYLES)
+    axes.figure.canvas.draw()
+    assert axes.get_yscale() == "linear"
