@@ -12,6 +12,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ExportError
 from odometry.export.ros_file import write_text
 from odometry.export.source import ExportSource
+from odometry.fixes.degrees import FARTHEST_M
 from odometry.geometry import se2
 from odometry.installed import extra_module
 from odometry.io.csv_table import write_csv_table
@@ -121,7 +122,7 @@ def write(source: ExportSource, folder: Path) -> None:
     ExtraError
         If the origin is known and pymap3d is not installed.
     ExportError
-        As `terrain_cells`.
+        As `terrain_cells`; if a cell lies more than 100 km from the origin.
     """
     cells = terrain_cells(source)
     if source.origin is None:
@@ -143,6 +144,13 @@ def _features(
     """A polygon a cell: x is east, y north of the origin."""
     pymap3d = extra_module("pymap3d", "bags", "GeoJSON")
     middles = np.array([[cell.x_m, cell.y_m] for cell in cells])
+    farthest_m = float(np.hypot(*middles.T).max())
+    if farthest_m > FARTHEST_M:
+        raise ExportError(
+            f"the cells lie {farthest_m / 1000:.0f} km from the origin that [source] of run.toml "
+            "states: the poses are of a map (UTM, a national grid), or the origin is another one. "
+            "Subtract its place from pose.csv, or leave the origin out for terrain_cells.csv"
+        )
     east, north = np.moveaxis(middles[:, None] + cell_m * CORNERS, -1, 0)
     latitude, longitude, _ = pymap3d.enu2geodetic(east, north, np.zeros_like(east), *origin)
     rings = np.round(np.stack([longitude, latitude], axis=-1), DECIMALS).tolist()

@@ -113,3 +113,18 @@ def test_a_result_that_does_not_say_where_is_refused(folder):
     (folder / "terrain.csv").write_text("\n".join(["t,label", *rows]) + "\n")
     with pytest.raises(ExportError, match="`run` again"):
         terrain_cells(read_export_source(folder))
+
+
+def test_positions_of_a_national_grid_are_not_placed_on_earth(tmp_path):
+    """They would lie near the pole, 5300 km north of the origin."""
+    pytest.importorskip("pymap3d")
+    folder = write_results(tmp_path / "results", ORIGIN)
+    file = folder / "estimate.csv"
+    header, *rows = (line.split(",") for line in file.read_text().splitlines())
+    north = header.index("y")
+    moved = [[*row[:north], repr(float(row[north]) + 5.3e6), *row[north + 1 :]] for row in rows]
+    file.write_text("\n".join(map(",".join, [header, *moved])) + "\n")
+    source = read_export_source(folder)
+    with pytest.raises(ExportError, match="5300 km from the origin.*are of a map"):
+        terrain_map.write(source, tmp_path)
+    assert not (tmp_path / "terrain.geojson").exists()
