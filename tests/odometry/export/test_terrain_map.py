@@ -125,6 +125,6 @@ def test_positions_of_a_national_grid_are_not_placed_on_earth(tmp_path):
     moved = [[*row[:north], repr(float(row[north]) + 5.3e6), *row[north + 1 :]] for row in rows]
     file.write_text("\n".join(map(",".join, [header, *moved])) + "\n")
     source = read_export_source(folder)
-    with pytest.raises(ExportError, match="5300 km from the origin.*are of a map"):
+    with pytest.raises(ExportError, match=r"5300 km from the origin.*are of a map"):
         terrain_map.write(source, tmp_path)
     assert not (tmp_path / "terrain.geojson").exists()
