@@ -3,9 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from odometry.errors import GapError, WindowError
+from odometry.gap.prepare.calibration import Calibration
+from odometry.gap.prepare.statistic import floor_of, gap_of
 from odometry.models.base import KinematicModel
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
+from odometry.windows.dense import DenseWindows
 from odometry.windows.motion_ratios import FEWEST_WINDOWS, HORIZON_M, motion_ratios
 from odometry.windows.windows import windows_of
 
@@ -43,3 +46,19 @@ def check_given(
             "unit, and a gap would be mostly theirs. Identify the model on the calibration runs "
             f"(--model {model.name}), or calibrate on runs that the set fits"
         )
+
+
+def given_notes(
+    known: Calibration, scenes: Sequence[DenseWindows], part_s: float
+) -> tuple[str, ...]:
+    """A sentence where given parameters leave surely more of the calibration runs than noise does.
+
+    Less than `check_given` refuses: another day, or an effect that they lack on purpose.
+    """
+    own, floor = gap_of(known.base, (), scenes, part_s), floor_of(known.held_back, part_s)
+    if own.low <= floor.high:
+        return ()
+    return (
+        f"on the calibration runs, too, the given parameters leave {own.value:.2g} m (by noise "
+        f"alone {floor.value:.2g} m): what is named may be theirs, and none of the measured runs",
+    )

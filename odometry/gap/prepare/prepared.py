@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
-from odometry.gap.prepare.given_base import check_given
+from odometry.gap.prepare.given_base import check_given, given_notes
 from odometry.gap.prepare.held_out import Apart, held_out_pieces
 from odometry.gap.prepare.outliers import Outliers
 from odometry.gap.prepare.rounding import rounding_notes
@@ -45,7 +45,7 @@ class Prepared:
     has_yaw : bool
         Whether headings were measured, and not found from positions.
     notes : tuple of str
-        What the reader should know of headings and rounded positions.
+        What the reader should know of headings, given parameters and rounded positions.
     """
 
     config: GapConfig
@@ -94,5 +94,6 @@ def prepared(
     raw_scenes, scenes, outliers = without_outliers(
         (measured, holdout), (whole, held), numbers, (known_scenes, known), config
     )
-    notes = (*headings.notes, *rounding_notes(known_scenes, *scenes))
+    of_given = () if given is None else given_notes(known, known_scenes, config.part_s)
+    notes = (*headings.notes, *of_given, *rounding_notes(known_scenes, *scenes))
     return Prepared(config, known, scenes, raw_scenes, outliers, not headings.found, notes)

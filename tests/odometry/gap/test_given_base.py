@@ -42,3 +42,13 @@ def test_the_workflow_asks(run, make_scene):
     base = Icr(), TRUE | {"y_left": 0.9, "y_right": -0.84}
     with pytest.raises(GapError, match="calibrate on runs that the set fits"):
         prepared([measured], [run], [], base, GapConfig())
+
+
+@pytest.mark.parametrize(
+    ("changed", "noted"), [({}, False), ({"y_left": 0.5, "y_right": -0.5}, True)]
+)
+def test_what_nearly_fits_is_said(run, make_scene, changed, noted):
+    """A base that turns by 13 % less: what it lacks is in the calibration as well."""
+    measured = make_scene(601, duration_s=80.0, top_m_s=0.5).run
+    notes = prepared([measured], [run], [], (Icr(), TRUE | changed), GapConfig()).notes
+    assert any("the given parameters leave" in note for note in notes) is noted
