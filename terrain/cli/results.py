@@ -24,7 +24,7 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
             rows.append((f"{name}: {trajectory}", *error_cells(score.to_table())))
     if not rows:
         click.echo(
-            "There is nothing to compare the odometer with: no pose.csv and truth.csv, or fewer "
+            "There is nothing to compare the odometer with: no pose.csv or truth.csv, or fewer "
             "than two poses within odometry.csv."
         )
         return
