@@ -9,7 +9,7 @@ import numpy as np
 from odometry.comparison.candidates import Candidate, GivenParameters, IdentifiedModel
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.evaluation import Evaluation, evaluate_all, run_fitness
-from odometry.comparison.fitting import SplitModels, fit_models
+from odometry.comparison.fitting import SplitModels, fit_models, identified_sets
 from odometry.comparison.parts_apart import parts_apart
 from odometry.comparison.result import Comparison
 from odometry.comparison.split import of_all, splits
@@ -18,7 +18,7 @@ from odometry.comparison.summary import Place
 from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.errors import ComparisonError, OdometryError
 from odometry.models.catalogue import MODELS
-from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
+from odometry.parameters import read_parameters
 from odometry.positions.heading import FoundHeading, headed
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
@@ -109,7 +109,7 @@ def compare(
         left_out=left_out | not_used,
         differences=tuple(_differences(split_models, evaluations, names, config)),
         fitness=tuple(run_fitness(split_models, names)),
-        parameters=_parameter_sets(
+        parameters=identified_sets(
             split_models if known else on_all, [each.label for each in identified]
         ),
         config=config,
@@ -230,21 +230,4 @@ def _not_identified(
         for each in split_models
         for model, predictor in each.predictors.items()
         if predictor.not_identified
-    }
-
-
-def _parameter_sets(
-    split_models: Sequence[SplitModels], models: Sequence[str]
-) -> dict[tuple[str, str], ParameterSet]:
-    """One set a robot and model, one table a terrain; none of what `identify` would refuse."""
-    tables: dict[tuple[str, str], dict[str, TerrainParameters]] = {}
-    for each in split_models:
-        for model in models:
-            predictor = each.predictors.get(model)
-            if predictor is not None and not predictor.not_identified:
-                of_model = tables.setdefault((each.split.robot, model), {})
-                of_model[each.split.terrain] = predictor.to_parameters()
-    return {
-        (robot, model): ParameterSet(of_model, {"name": robot})
-        for (robot, model), of_model in tables.items()
     }

@@ -1,7 +1,6 @@
 """The output folder of a comparison: numbers, windows, parameters."""
 
 import json
-import re
 from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from odometry.comparison.evaluation import Evaluation
+from odometry.comparison.file_names import file_name
 from odometry.comparison.fitting import SplitModels
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import COLUMNS, Place, Summary, values_of
@@ -60,11 +60,6 @@ def write_comparison(
         files.append(folder / f"{model}.toml")
         write_parameters(files[-1], parameters)
     return files
-
-
-def file_name(*names: str) -> str:
-    """Names as a part of a path: letters, digits and underscores."""
-    return "_".join(re.sub(r"\W+", "_", name).strip("_") or "unnamed" for name in names)
 
 
 def comparison_table(comparison: Comparison) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from odometry.comparison.candidates import Candidate, Predictor
 from odometry.comparison.config import ComparisonConfig
 from odometry.comparison.split import Split
 from odometry.errors import OdometryError
+from odometry.parameters import ParameterSet, TerrainParameters
 
 
 @dataclass(frozen=True)
@@ -71,3 +72,22 @@ def fit_models(
                 bar.update()
             found.append(SplitModels(split, predictors, reasons))
     return tuple(found)
+
+
+def identified_sets(
+    split_models: Sequence[SplitModels], models: Sequence[str]
+) -> dict[tuple[str, str], ParameterSet]:
+    """One set a robot and model, one table a terrain; none of what `identify` would refuse."""
+    tables: dict[tuple[str, str], dict[str, TerrainParameters]] = {}
+    widths_m: dict[str, float] = {}
+    for each in split_models:
+        widths_m[each.split.robot] = each.split.held_out[0].run.robot.track_width
+        for model in models:
+            predictor = each.predictors.get(model)
+            if predictor is not None and not predictor.not_identified:
+                of_model = tables.setdefault((each.split.robot, model), {})
+                of_model[each.split.terrain] = predictor.to_parameters()
+    return {
+        (robot, model): ParameterSet(of_model, {"name": robot, "track_width": widths_m[robot]})
+        for (robot, model), of_model in tables.items()
+    }

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import BoolArray
+from odometry.comparison.file_names import check_file_names
 from odometry.errors import WindowError
 from odometry.identification.shorter_windows import enough_of
 from odometry.identification.stretch_fit import stretches_for
@@ -165,11 +166,14 @@ def splits(runs: Sequence[Run], train: Sequence[Run] = ()) -> tuple[Split, ...]:
     ------
     RunFolderError
         If a run is there twice.
+    ComparisonError
+        As `check_file_names`.
     """
     check_no_run_twice([*runs, *train])
     names = run_names([*runs, *train])
     labels = robot_labels([run.robot for run in [*runs, *train]])
     evaluated = _by_robot_and_terrain(runs, names[: len(runs)], labels)
+    check_file_names(evaluated)
     training = _by_robot_and_terrain(train, names[len(runs) :], labels)
     found: list[Split] = []
     for (robot, terrain), parts in evaluated.items():

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from odometry.arrays import FloatArray
 from odometry.comparison.config import ROTATION_HORIZON_M
 from odometry.comparison.evaluation import Evaluation
-from odometry.comparison.files import file_name
+from odometry.comparison.file_names import file_name
 from odometry.comparison.result import Comparison
 from odometry.comparison.summary import QUANTITIES, Place, values_of
 from odometry.report.comparison_plots import (

@@ -10,7 +10,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
 from odometry.arrays import FloatArray
-from odometry.comparison.files import file_name
+from odometry.comparison.file_names import file_name
 from odometry.comparison.summary import QUANTITIES
 from odometry.comparison.training_horizons import HorizonErrors, best_training_horizons
 from odometry.digits import three_figures

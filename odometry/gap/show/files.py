@@ -135,7 +135,8 @@ def extended_model(result: GapResult) -> ParameterSet:
             effects=effects,
         )
     robot = result.base.robot
-    return ParameterSet(terrains, {"name": robot.name} if robot.name else {})
+    named = {"name": robot.name} if robot.name else {}
+    return ParameterSet(terrains, named | {"track_width": robot.track_width})
 
 
 def with_latency(result: GapResult) -> tuple[Added, ...]:

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from odometry.comparison.compare import compare
-from odometry.comparison.files import comparison_table, file_name, write_comparison
+from odometry.comparison.file_names import check_file_names, file_name
+from odometry.comparison.files import comparison_table, write_comparison
+from odometry.errors import ComparisonError
 from odometry.parameters import read_parameters
 from odometry.run import Run
 
@@ -121,6 +123,16 @@ def test_robots_have_folders_of_their_own(tmp_path, bench, quick):
         "parameters/rover/differential_drive.toml",
         "parameters/crawler/differential_drive.toml",
     ]
+    assert read_parameters(files[1]).vehicle == {"name": "crawler", "track_width": 0.5}
+
+
+def test_robots_whose_folders_would_be_one_are_refused(tmp_path, bench, quick):
+    runs = []
+    for name in ("rover 1", "rover-1"):
+        robot = {"name": name, "track_width": 0.5}
+        runs.append(bench.write(tmp_path / name, np.full((200, 2), 0.5), robot=robot))
+    with pytest.raises(ComparisonError, match="their files would have one name"):
+        compare([Run.read(run) for run in runs], ["differential_drive"], config=quick)
 
 
 def test_the_same_comparison_gives_the_same_table(grass, quick):
@@ -134,3 +146,20 @@ def test_the_same_comparison_gives_the_same_table(grass, quick):
 def test_names_become_parts_of_paths():
     assert file_name("Robot 5 (new)", "sand/gravel") == "Robot_5_new_sand_gravel"
     assert file_name("../..") == "unnamed"
+
+
+@pytest.mark.parametrize(
+    ("places", "said"),
+    [
+        ([("rover 1", "sand"), ("rover-1", "mud")], "'rover 1' and 'rover-1' differ in signs"),
+        ([("a", "wet grass"), ("a", "Wet_grass")], "'a' on 'wet grass' and 'a' on 'Wet_grass'"),
+        ([("a", "b c"), ("a b", "c")], "'a' on 'b c' and 'a b' on 'c'"),
+    ],
+)
+def test_names_whose_files_would_replace_each_other_are_refused(places, said):
+    with pytest.raises(ComparisonError, match=said):
+        check_file_names(places)
+
+
+def test_other_names_have_files_of_their_own():
+    check_file_names([("a", "wet grass"), ("a", "wet grass 2"), ("b", "wet grass")])

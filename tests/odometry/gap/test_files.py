@@ -130,7 +130,9 @@ def test_what_is_not_finite_is_null(none_result, tmp_path):
 def test_the_model_is_read_back_as_it_was_found(result, request, tmp_path):
     result = request.getfixturevalue(result)
     write_gap(result, tmp_path)
-    ((_, table),) = read_parameters(tmp_path / "model.toml").terrains.items()
+    written = read_parameters(tmp_path / "model.toml")
+    assert written.vehicle["track_width"] == result.base.robot.track_width
+    ((_, table),) = written.terrains.items()
     assert table.model == "icr"
     assert list(table.values.values()) == pytest.approx(result.base.values, abs=0)
     added = added_effects(table.effects, "model.toml")
