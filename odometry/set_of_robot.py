@@ -1,15 +1,22 @@
 """Whether a parameter set is of this robot, and in the units of this program."""
 
-from math import isfinite
+from math import inf
 
-from odometry.estimation.terrain_beliefs import ICR_FORM_MODELS, icr_form
+import numpy as np
+
+from odometry.models.catalogue import MODELS
+from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 
 SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
-# Between the ICRs, in track widths; printed sets have up to 8.1 (Baril 2020, concrete)
+# As which a robot turns, in track widths; printed sets have up to 14 (Baril 2020, concrete)
 LEAST_WIDTHS, MOST_WIDTHS = 0.5, 20.0
 LEAST_GAIN = 0.1  # metres of the robot for each metre of its treads
+SPEED_M_S = 0.5
+DRIVES = Inputs(
+    SPEED_M_S * np.array([[0.5, 1.0], [1.0, 1.0]]), accelerations_m_s2=np.zeros((2, 2))
+)  # a bend to the left, and straight on
 IDEAL = "differential_drive"  # whose track width may be an effective one
 
 
@@ -46,20 +53,26 @@ def other_width(parameters: ParameterSet, robot: Robot) -> str:
 
 
 def odd_values(name: str, table: TerrainParameters, robot: Robot) -> str:
-    """A sentence where ICRs or slip factors are of no robot of this size; else empty."""
-    if table.model not in ICR_FORM_MODELS:
+    """A sentence where no robot of this size turns or goes as a table says; else empty.
+
+    Without its effects, in a bend and straight on, on level ground.
+    """
+    if table.model not in MODELS:
         return ""
-    form = icr_form(table, f"[terrain.{name}]")
-    apart_m, gain = float(form.icrs[0] - form.icrs[1]), float(form.alphas.mean())
-    widths = apart_m / robot.track_width
-    if not LEAST_WIDTHS <= widths <= MOST_WIDTHS:
-        return (
-            f"[terrain.{name}]: its ICRs lie {apart_m:.4g} m apart, {widths:.1f} track widths of "
-            "this robot: they are in another unit than metres, or of another robot"
-        )
-    if isfinite(gain) and gain < LEAST_GAIN:
+    model = MODELS[table.model]
+    bend, straight = model.twist(model.pack(table.values), DRIVES)
+    gain = float(straight[0]) / SPEED_M_S
+    if gain < LEAST_GAIN:
         return (
             f"[terrain.{name}]: a metre of the treads moves the robot by {gain:.2g} m: they are "
             "slip factors of speeds in another unit than m/s"
         )
-    return ""
+    width_m = SPEED_M_S / 2 / float(bend[2]) if bend[2] > 0 else inf
+    widths = width_m / robot.track_width
+    if LEAST_WIDTHS <= widths <= MOST_WIDTHS:
+        return ""
+    return (
+        f"[terrain.{name}]: the robot would turn as if {width_m:.4g} m wide, {widths:.4g} of its "
+        "track widths: a set in another unit (metres, radians and m/s are expected), or of "
+        "another robot"
+    )

@@ -37,7 +37,7 @@ def test_an_ideal_drive_may_have_an_effective_width():
 
 @pytest.mark.parametrize(
     ("factor", "said"),
-    [(1000.0, "680 m apart, 1700.0 track widths"), (0.2, "0.136 m apart, 0.3 track widths")],
+    [(1000.0, "680 m wide, 1700 of its track"), (0.2, "0.136 m wide, 0.34 of its track")],
 )
 def test_icrs_of_another_unit_or_robot(factor, said):
     (note,) = notes({name: factor * value for name, value in ICRS.items()})
@@ -49,6 +49,22 @@ def test_slip_factors_of_another_unit():
     assert "moves the robot by 0.001 m" in note
 
 
-def test_printed_sets_of_a_robot_that_slips_much_are_not_odd():
-    warthog = read_parameters(shipped_data() / "parameters" / "warthog_icr.toml")
-    assert set_notes(warthog, Robot(1.2)) == []
+def test_a_linear_model_in_degrees():
+    in_degrees = {"gamma_31": -60.0, "gamma_32": 60.0, "gamma_21": 0.0, "gamma_22": 0.0}
+    (note,) = notes(in_degrees | {"gamma_11": 0.5, "gamma_12": 0.5}, model="full_linear")
+    assert "as if 0.01667 m wide" in note
+
+
+def test_a_set_that_never_turns():
+    names = ("gamma_21", "gamma_22", "gamma_31", "gamma_32")
+    never = dict.fromkeys(names, 0.0) | {"gamma_11": 0.5, "gamma_12": 0.5}
+    (note,) = notes(never, model="full_linear")
+    assert "as if inf m wide" in note
+
+
+@pytest.mark.parametrize(
+    ("robot", "width_m"), [("warthog", 1.2), ("auriga_alpha", 0.42), ("j8", 1.7), ("lazaro", 0.4)]
+)
+def test_printed_sets_are_not_odd(robot, width_m):
+    for file in (shipped_data() / "parameters").glob(f"{robot}*.toml"):
+        assert set_notes(read_parameters(file), Robot(width_m)) == []

@@ -51,7 +51,9 @@ def test_a_set_in_another_unit_is_said(grass, quick, bench, tmp_path):
     file = bench.write_set(tmp_path / "mm.toml", "icr_symmetric", in_mm)
     comparison = compare(grass, [file], config=quick)
     (summary, *_) = comparison.summaries_at(comparison.places[0])
-    assert any("900 m apart" in one for one in comparison.remarks_at(comparison.places[0], summary))
+    assert any(
+        "as if 900 m wide" in one for one in comparison.remarks_at(comparison.places[0], summary)
+    )
 
 
 def test_parameter_sets_are_those_of_identify(grass, quick):

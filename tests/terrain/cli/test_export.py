@@ -91,7 +91,7 @@ def test_a_set_in_millimetres_is_said_there_and_in_the_file(parameters, tmp_path
     )
     answer = call(parameters, "--to", "ros", "--out", tmp_path / "out")
     (note,) = [line for line in answer.stderr.splitlines() if line.startswith("Warning: ")]
-    assert "its ICRs lie 1000 m apart, 2000.0 track widths" in note
+    assert "as if 1000 m wide, 2000 of its track widths" in note
     assert f"# {note.removeprefix('Warning: ')}\n" in (tmp_path / "out" / "ros.yaml").read_text()
 
 
