@@ -92,7 +92,9 @@ def _of_day_s(text: str) -> float:
 
 
 def _day_s(kind: str, fields: list[str]) -> float | None:
-    """Where a day begins, in seconds since 1970; None where it is not stated."""
+    """Where a day begins, in seconds since 1970; None where it is not stated, or not yet known."""
+    if kind == "RMC" and fields[2] != "A":
+        return None
     if kind == "RMC":
         text = fields[9]
         day, month, year = text[:2], text[2:4], text[4:] and f"20{text[4:]}"

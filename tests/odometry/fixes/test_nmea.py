@@ -79,6 +79,13 @@ def test_south_west_and_midnight(tmp_path):
     assert (found.places[:, 1] < -70.2).all()
 
 
+def test_a_date_before_the_first_fix_is_none(tmp_path):
+    early = sentence("GNRMC", "000005.00", "V", *[""] * 6, "060180", "", "", "N")
+    lines = [rmc(STAMPS_S[0]), early, early]
+    lines += [gga(*each) for each in zip(STAMPS_S, LATITUDES, LONGITUDES, strict=True)]
+    assert_usual(read_fixes(log(tmp_path, *lines)))
+
+
 def test_lesser_kinds_no_fix_and_damaged_sentences_are_left_out(tmp_path):
     kinds = ["4"] * 25 + ["5"] * 8 + ["1"] * 4 + ["0"] * 3
     drive = zip(STAMPS_S, LATITUDES, LONGITUDES, kinds, strict=True)
