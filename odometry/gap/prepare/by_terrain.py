@@ -24,7 +24,7 @@ def by_terrain(
     base is another model or was given, or fewer than two terrains are labelled for long enough.
     """
     labels = labels_covered(scenes)
-    base_is_open = isinstance(known.base.model, Icr) and known.uncertain.latency_is_free
+    base_is_open = isinstance(known.base.model, Icr) and known.uncertain.free.any()
     if not base_is_open or len(labels) < 2:
         return known
     split = calibrated(scenes, IcrByTerrain(labels), known.base.robot, config)

@@ -31,7 +31,6 @@ TOGETHER_S = 10.0  # within which errors are taken as correlated
 ROUNDS = 3  # of values and noise in turn
 ITERATIONS = 8
 STARTS_WITH = Noise(0.02, 0.01, 0.02, 0.02)
-EMPTY = np.empty((0, 0))
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,8 @@ def calibrated(
 ) -> Calibration:
     """Identify the base on calibration runs, and the noise; or take the given values as they are.
 
-    The noise is that of the model as identified here, with what is given of the robot itself.
+    The noise is that of the model as identified here, with what is given of the robot itself. What
+    a parameter set does not hold (the latency, the gyroscope's own numbers) is always identified.
 
     Raises
     ------
@@ -103,12 +103,12 @@ def calibrated(
     held_back = _held_back(uncertain, scenes, whiteners, config)
     if given is None:
         return Calibration(uncertain, information, noise, held_back, gyro_expected)
-    base = replace(uncertain.base, values=model.pack(given), latency_s=0.0)
-    believed = Uncertain(base, np.zeros_like(free), False, gyroscope)
-    count = len(believed.values)
-    return Calibration(
-        believed, information[-count:, -count:] if count else EMPTY, noise, held_back, gyro_expected
+    base = replace(uncertain.base, values=model.pack(given))
+    believed, information = _fit(
+        Uncertain(base, np.zeros_like(free), True, gyroscope), scenes, whiteners
     )
+    information = _with_drift(believed, information, config)
+    return Calibration(believed, information, noise, held_back, gyro_expected)
 
 
 def _doubted(noise: Noise, config: GapConfig) -> tuple[Noise, float]:

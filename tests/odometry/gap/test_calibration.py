@@ -73,12 +73,21 @@ def test_given_values_are_believed_as_they_are(calibrate):
     given = {"y_left": 0.5, "y_right": -0.5, "x_icr": 0.0, "alpha_left": 1.0, "alpha_right": 1.0}
     known = calibrate(600, given=given)
     np.testing.assert_array_equal(known.base.values, [0.5, -0.5, 0.0, 1.0, 1.0])
-    assert known.base.latency_s == 0.0
-    assert known.information.shape == (0, 0)
-    assert len(known.uncertain.values) == 0
+    assert known.uncertain.names == ("latency",)
+    assert known.information.shape == (1, 1)
     identified = calibrate(600)
     assert known.noise == identified.noise
     assert len(known.held_back) == len(identified.held_back) == GapConfig().held_back
+
+
+def test_the_latency_of_the_recordings_is_none_that_a_set_lacks(calibrate):
+    """A set says nothing of it, and without it a robot that follows late lacked an effect."""
+    names = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right")
+    given = dict(zip(names, TRUE[:5].tolist(), strict=True))
+    known = calibrate(600, late_s=0.08, given=given)
+    sigma = np.sqrt(np.linalg.inv(known.information)[-1, -1])
+    assert known.base.latency_s == pytest.approx(0.08, abs=4 * sigma)
+    assert sigma < 0.01
 
 
 def test_noise_is_that_of_what_is_given_of_the_robot_itself(calibrate):
