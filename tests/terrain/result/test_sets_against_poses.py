@@ -13,7 +13,8 @@ from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.motion import level_path
-from terrain.result.sets_against_poses import SetAgainstPoses, sentences, sets_against_poses
+from odometry.windows.motion_ratios import MotionRatios
+from terrain.result.sets_against_poses import sentences, sets_against_poses
 
 RIGHT = {"y_left": 0.45, "y_right": -0.42, "x_icr": -0.05}
 AT_S = 0.05 * np.arange(1600)
@@ -81,6 +82,5 @@ def test_without_yaw_or_poses_nothing_is_compared():
     ("ratio", "said"), [(0.78, True), (0.82, False), (1.22, False), (1.28, True)]
 )
 def test_a_quarter_more_is_as_far_as_one_over_it(ratio, said):
-    one = SetAgainstPoses("a", 20, ratio, 0.02, 1.0, 0.01)
-    assert one.turns_otherwise is said
-    assert SetAgainstPoses("a", 20, np.nan, np.nan, 1.0, 0.01).turns_otherwise is False
+    assert MotionRatios(ratio, 0.02, 1.0, 0.01).turns_otherwise is said
+    assert MotionRatios(np.nan, np.nan, 1.0, 0.01).turns_otherwise is False
