@@ -46,7 +46,7 @@ def read_nmea(file: Path) -> FixFile | None:
     if not places or not days:
         missing = "RMC or ZDA, which state the date" if places else "GGA with a right checksum"
         raise TrajectoryError(f"{file}: it has no sentence {missing}")
-    rows = [(_dated(of_day_s, days, number), *cells) for number, of_day_s, cells in places]
+    rows = [(dated, *place[2]) for dated, place in zip(_dated(places, days), places, strict=True)]
     named = FixColumns(
         Named(LATITUDE, "deg"),
         Named(LONGITUDE, "deg"),
@@ -122,10 +122,10 @@ def _degrees(text: str, side: str) -> str:
     return repr(-value if side in {"S", "W"} else value)
 
 
-def _dated(of_day_s: float, stamps: list[tuple[int, float]], number: int) -> str:
-    """Seconds since 1970 of a time of day: nearest to the stamp that is nearest in the file."""
-    lines = np.array([line for line, _ in stamps])
-    near_s = stamps[int(np.abs(lines - number).argmin())][1]
-    day_s = np.floor(near_s / DAY_S) * DAY_S
-    stamp_s = day_s + of_day_s
-    return repr(float(stamp_s + DAY_S * np.round((near_s - stamp_s) / DAY_S)))
+def _dated(places: list[Place], stamps: list[tuple[int, float]]) -> list[str]:
+    """Seconds since 1970 of times of day: nearest to the stamp that is nearest in the file."""
+    numbers, of_day_s = np.array([place[:2] for place in places]).T
+    lines, known_s = np.array(stamps).T
+    near_s = known_s[np.searchsorted((lines[1:] + lines[:-1]) / 2, numbers)]
+    stamps_s = np.floor(near_s / DAY_S) * DAY_S + of_day_s
+    return [*map(repr, (stamps_s + DAY_S * np.round((near_s - stamps_s) / DAY_S)).tolist())]

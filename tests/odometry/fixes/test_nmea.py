@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import TrajectoryError
+from odometry.fixes import nmea
 from odometry.fixes.fixes import read_fixes
 from tests.odometry.fixes.made_fixes import LATITUDES, LONGITUDES, STAMPS_S, assert_usual
 
@@ -77,6 +78,16 @@ def test_south_west_and_midnight(tmp_path):
     np.testing.assert_allclose(found.stamps_s, stamps_s)
     np.testing.assert_allclose(found.places[:, 0], -33.5)
     assert (found.places[:, 1] < -70.2).all()
+
+
+def test_dates_of_a_long_log_are_found_in_one_go(tmp_path, monkeypatch):
+    """Row by row they took minutes of a log of an hour."""
+    calls, dated = [], nmea._dated
+    monkeypatch.setattr(nmea, "_dated", lambda *of: calls.append(1) or dated(*of))
+    stamps_s = datetime(2026, 11, 30, tzinfo=UTC).timestamp() + 43_000 * np.arange(8)
+    lines = [of(stamp_s) for stamp_s in stamps_s for of in (rmc, lambda s: gga(s, 48.0, s / 1e9))]
+    np.testing.assert_allclose(read_fixes(log(tmp_path, *lines)).stamps_s, stamps_s)
+    assert len(calls) == 1
 
 
 def test_a_date_before_the_first_fix_is_none(tmp_path):
