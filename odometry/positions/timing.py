@@ -26,6 +26,7 @@ LENGTH_M = 20.0  # of the pieces of path that are compared
 PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
 # Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
 LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
+EXACT_M = 1e-9  # misfits below are rounding, as of a robot that stands
 BESIDE_TREADS = 0.95  # of the misfit with late treads alone, whatever the rates mean
 
 
@@ -68,7 +69,7 @@ def timings_of(runs: Sequence[Run]) -> tuple[Timing, ...]:
     }
     rises, positions = np.zeros(len(PERIODS)), 1
     for i, of in compared.items():
-        least = of.misfits_m.min(axis=(1, 2))
+        least = np.maximum(of.misfits_m.min(axis=(1, 2)), EXACT_M)
         rises += len(records[i].poses) * np.log(least / least[0])
         positions += len(records[i].poses)
     best = int(np.argmin(rises))

@@ -15,6 +15,11 @@ def moved_in_time(of, late_s):
     return table({**of.columns, "t": of.stamps_s + late_s})
 
 
+def without(of, *names):
+    """A table with zeros in some columns."""
+    return table({**of.columns, **{name: np.zeros(len(of.stamps_s)) for name in names}})
+
+
 def late_s_of(run):
     return timings_of([emptied(run)])[0].positions_late_s
 
@@ -70,6 +75,18 @@ def test_what_a_yaw_rate_means_is_the_same_in_all_runs_of_a_recorder():
     )
     assert timings_of([noisy])[0].rates_early_s == 0.0
     assert timings_of([clear, noisy])[1].rates_early_s == pytest.approx(0.1)
+
+
+def test_a_run_that_stands_hides_nothing_of_what_yaw_rates_mean():
+    """Its path and its positions are one point, which fits any meaning."""
+    run = emptied(with_means(drive(3, noise_m=0.003, gyroscope=True, duration_s=200.0), 0.1))
+    still = replace(
+        run,
+        odometry=without(run.odometry, "v_left", "v_right"),
+        imu=without(run.imu, "gyro_z"),
+        pose=without(run.pose, "x", "y"),
+    )
+    assert [each.rates_early_s for each in timings_of([still, run])] == pytest.approx([0.1, 0.1])
 
 
 def test_rates_early_by_as_much_as_treads_are_late_are_no_late_positions():
