@@ -96,7 +96,7 @@ def export(
         notes = set_notes(exported.parameters, Robot(exported.track_width_m))
         for note in notes:
             click.echo(f"Warning: {note}", err=True)
-        lines = "".join(f"# {note}\n" for note in notes)
+        lines = "".join(f"# {' '.join(note.split())}\n" for note in notes)
         exported = replace(exported, comment=exported.comment + lines)
     with output.writing() as part:
         for name in dict.fromkeys(formats):

@@ -95,6 +95,13 @@ def test_a_set_in_millimetres_is_said_there_and_in_the_file(parameters, tmp_path
     assert f"# {note.removeprefix('Warning: ')}\n" in (tmp_path / "out" / "ros.yaml").read_text()
 
 
+def test_a_name_with_a_line_break_is_one_line_of_comment(parameters, tmp_path):
+    named = '[vehicle]\nname = "rover\\nsecond: line"\n'
+    parameters.write_text(SET.replace("[vehicle]\n", named))
+    call(parameters, "--to", "ros", "--track-width", "0.8", "--out", tmp_path / "out")
+    assert "\nsecond" not in (tmp_path / "out" / "ros.yaml").read_text()
+
+
 def test_what_was_made_from_is_in_the_manifest(finished, tmp_path):
     """The sum is of the result, not of its figures."""
     call(finished, "--to", "tum", "--out", tmp_path / "out")
