@@ -107,7 +107,7 @@ def _day_s(kind: str, fields: list[str]) -> float | None:
 
 def _cells(fields: list[str]) -> tuple[str, ...]:
     """Latitude, longitude [degrees], height [m] and kind of a GGA sentence, empty without."""
-    latitude, longitude = _degrees(*fields[2:4]), _degrees(*fields[4:6])
+    latitude, longitude = (_degrees(fields[of], fields[of + 1]) for of in (2, 4))
     kind = KINDS[int(fields[6] or 0)]
     height = repr(float(fields[9]) + float(fields[11] or 0)) if fields[9] else ""
     return latitude, longitude, height, kind

@@ -115,6 +115,7 @@ def test_lesser_kinds_no_fix_and_damaged_sentences_are_left_out(tmp_path):
         ([RMC, GGA.replace("5B", "5C")], "no sentence GGA with a right checksum"),
         ([RMC, sentence("GPGGA", "9x2725.00", *[""] * 5, "1")], "row 2: .* cannot be read as GGA"),
         ([RMC, sentence("GPGGA", "092725.00", *[""] * 5)], "row 2: .* cannot be read as GGA"),
+        ([RMC, sentence("GPGGA", "092725.00", "4717.1")], "row 2: .* cannot be read as GGA"),
     ],
 )
 def test_what_is_refused(tmp_path, lines, said):
