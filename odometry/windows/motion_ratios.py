@@ -11,6 +11,7 @@ from odometry.windows.windows import Windows
 HORIZON_M = 1.0  # of a window
 FEWEST_WINDOWS = 5
 LEAST_TURN_RAD = 0.05  # of windows, root mean square: where both have less nothing is known
+LEAST_WAY_M = 0.2  # the same; less has a robot that spins on the spot, and noise alone is a way
 TURNS, WAY = 0.25, 0.15  # relative: one terrain differs by less from day to day
 CERTAIN = 4.0  # standard deviations
 TINY = 1e-12
@@ -53,11 +54,17 @@ def motion_ratios(model: Moving, values: FloatArray, windows: Windows) -> Motion
     """The ratios over windows (K) of HORIZON_M, of a model with packed parameters (P,)."""
     predicted = window_motion(model, values, windows)
     turns_rad = predicted[:, 2], windows.measured[:, 2]
-    turn = turn_sd = float("nan")
-    if max(float(np.sqrt(np.mean(each**2))) for each in turns_rad) > LEAST_TURN_RAD:
-        turn, turn_sd = _slope(*turns_rad)
-    way = (np.hypot(*of[:, :2].T) for of in (predicted, windows.measured))
-    return MotionRatios(turn, turn_sd, *_slope(*way))
+    predicted_m, measured_m = (np.hypot(*of[:, :2].T) for of in (predicted, windows.measured))
+    return MotionRatios(
+        *_ratio(*turns_rad, LEAST_TURN_RAD), *_ratio(predicted_m, measured_m, LEAST_WAY_M)
+    )
+
+
+def _ratio(predicted: FloatArray, measured: FloatArray, least: float) -> tuple[float, float]:
+    """Measured over predicted (K) and its standard deviation; NaN where both are small."""
+    if max(float(np.sqrt(np.mean(each**2))) for each in (predicted, measured)) > least:
+        return _slope(predicted, measured)
+    return float("nan"), float("nan")
 
 
 def _differs(ratio: float, sd: float, share: float) -> bool:

@@ -1,5 +1,8 @@
 """Parameters that are given for the base, against the calibration runs."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from odometry.errors import GapError
@@ -7,6 +10,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.given_base import check_given
 from odometry.gap.prepare.prepared import prepared
 from odometry.models.icr import Icr
+from tests.odometry.positions_drives import table
 
 TRUE = {"y_left": 0.45, "y_right": -0.42, "x_icr": 0.02, "alpha_left": 1.0, "alpha_right": 1.0}
 MILLIMETRES = {name: 1000 * TRUE[name] for name in ("y_left", "y_right", "x_icr")}
@@ -35,6 +39,21 @@ def test_what_fits_or_nearly_fits_is_taken(run, changed):
 def test_what_is_of_another_robot_or_unit_is_refused(run, changed, said):
     with pytest.raises(GapError, match=said):
         check_given(Icr(), TRUE | changed, [run])
+
+
+def test_the_noise_of_positions_is_no_way_of_a_robot_that_spins_on_the_spot(run):
+    rng, t = np.random.default_rng(7), np.arange(0.0, 120.0, 0.02)
+    turning = np.outer([-0.45, 0.45], 0.6 * np.sign(np.sin(t / 15)))
+    left, right = turning + rng.normal(0, 0.01, (2, len(t)))
+    yaw = np.append(0.0, np.cumsum(0.02 * (right - left)[:-1] / 0.9))[::5]
+    x, y = rng.normal(0, 0.02, (2, len(yaw)))
+    spin = replace(
+        run,
+        odometry=table({"t": t, "v_left": left, "v_right": right}),
+        pose=table({"t": t[::5], "x": x, "y": y, "yaw": yaw}),
+        imu=None,
+    )
+    check_given(Icr(), TRUE | {"y_right": -0.45, "x_icr": 0.0}, [spin])
 
 
 def test_the_workflow_asks(run, make_scene):
