@@ -22,11 +22,12 @@ from odometry.windows.stretches import position_record_with_yaw_rates
 LONGEST_S, COARSE_S, FINE_S = 1.0, 0.1, 0.01
 TRIED_S = np.arange(-LONGEST_S, LONGEST_S + COARSE_S / 2, COARSE_S)
 IN_TIME = len(TRIED_S) // 2
-LENGTH_M = 20.0  # of the pieces of path that are compared
+LENGTH_M, SHORT_M = 20.0, 5.0  # of the pieces of path that are compared
 PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
 # Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
 LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
 EXACT_M = 1e-9  # misfits below are rounding, as of a robot that stands
+SHORT_CLEARLY, SHORT_APART_S = 0.95, 0.15  # a robot that slides in turns is late over 20 m alone
 BESIDE_TREADS = 0.95  # of the misfit with late treads alone, whatever the rates mean
 
 
@@ -108,20 +109,28 @@ class _Compared:
         """How late positions are, for one meaning of the yaw rates; 0 where that is not clear."""
         of_positions, of_treads = self.misfits_m[meaning, 0], self.misfits_m[:, 1]
         early_s, best = self._early_s[meaning], int(np.argmin(of_positions))
-        if (
-            best in (0, len(TRIED_S) - 1)
-            or of_positions[best] > LATE_CLEARLY * of_positions[IN_TIME]
-            or of_positions[best] > BESIDE_TREADS * of_treads.min()
-        ):
+        clear = (
+            0 < best < len(TRIED_S) - 1
+            and of_positions[best] <= LATE_CLEARLY * of_positions[IN_TIME]
+            and of_positions[best] <= BESIDE_TREADS * of_treads.min()
+        )
+        if not clear or not self._late_in_short_pieces(TRIED_S[best], early_s):
             return Timing(0.0, early_s)
         near_s = TRIED_S[best] + np.arange(-COARSE_S, COARSE_S + FINE_S / 2, FINE_S)
         misfits_m = [self._misfit_m(late_s, late_s + early_s) for late_s in near_s]
         return Timing(float(near_s[np.argmin(misfits_m)]), early_s)
 
-    def _misfit_m(self, late_s: float, turns_late_s: float) -> float:
+    def _late_in_short_pieces(self, found_s: float, early_s: float) -> bool:
+        """Whether pieces of SHORT_M say the same: positions are late over any length."""
+        short = [self._misfit_m(late_s, late_s + early_s, SHORT_M) for late_s in TRIED_S]
+        best = int(np.argmin(short))
+        near = abs(TRIED_S[best] - found_s) <= SHORT_APART_S
+        return bool(near and short[best] <= SHORT_CLEARLY * short[IN_TIME])
+
+    def _misfit_m(self, late_s: float, turns_late_s: float, length_m: float = LENGTH_M) -> float:
         speeds = _delayed(self._record, self._speeds, late_s)
         rates = _delayed(self._record, self._rates, turns_late_s)
-        return path_misfit(self._record, speeds, rates, LENGTH_M)
+        return path_misfit(self._record, speeds, rates, length_m)
 
 
 def _period_s(record: Record) -> float:

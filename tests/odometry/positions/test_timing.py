@@ -8,7 +8,9 @@ import pytest
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
 from odometry.positions.timing import timings_of
+from odometry.run import Run
 from tests.odometry.positions_drives import drive, emptied, table
+from tests.studies.positions import emptied as without_yaw
 
 
 def moved_in_time(of, late_s):
@@ -104,3 +106,9 @@ def test_late_treads_beside_rates_of_unknown_meaning_are_no_late_positions():
     run = with_means(drive(4, noise_m=0.003, gyroscope=True, duration_s=200.0), 0.1)
     late = replace(run, odometry=moved_in_time(run.odometry, -0.13))
     assert timings_of([emptied(late)])[0].positions_late_s == 0.0
+
+
+def test_a_robot_that_slides_in_its_turns_is_not_late(shared_data):
+    """On ice the way follows the turns late over 20 m, and not over 5 m."""
+    run = Run.read(shared_data / "motion" / "warthog_ice_20240730_1630_s00")
+    assert timings_of([without_yaw(run, noise_m=0.02)])[0].positions_late_s == 0.0
