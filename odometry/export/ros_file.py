@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.errors import ParameterError
 from odometry.export.drive_numbers import MotionErrors, Pace, drive_numbers
-from odometry.export.ros_yaml import ros_yaml
+from odometry.export.ros_yaml import printable, ros_yaml
 from odometry.export.source import ExportSource
 from odometry.identification.identification import Identification
 from odometry.io.files import atomic_write
@@ -33,7 +33,7 @@ def write(source: ExportSource, folder: Path) -> None:
         try:
             numbers[name] = drive_numbers(name, terrains[name], source.track_width_m)
         except ParameterError as error:
-            left_out += f"# left out: {error}\n"
+            left_out += f"# left out: {printable(str(error))}\n"
     ordered = [numbers[name] for name in terrains if name in numbers]
     robot = source.content.get("robot", {})
     text = ros_yaml(

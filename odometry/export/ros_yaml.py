@@ -62,9 +62,9 @@ def _controller(
 ) -> Iterable[str]:
     yield "diff_drive_controller:"
     yield "  ros__parameters:"
-    yield f"    # Terrain: {_words(drive.terrain)} (model {drive.model})"
+    yield f"    # Terrain: {printable(drive.terrain)} (model {drive.model})"
     for name in drive.effects:
-        yield f"    # Left out: the effect {_words(name)}"
+        yield f"    # Left out: the effect {printable(name)}"
     yield f"    wheel_separation: {_number(drive.track_width_m)}"
     if radius_m is not None:
         yield f"    wheel_radius: {_number(radius_m)}"
@@ -80,7 +80,7 @@ def _controller(
     v_x, v_y, omega = errors.twist_variances(pace, left_over_m).tolist()
     diagonal = (v_x, v_y, NOT_MEASURED, NOT_MEASURED, NOT_MEASURED, omega)
     yield f"    # v_x, v_y [m^2/s^2] and yaw rate [rad^2/s^2] {_at(pace)}, with what the"
-    yield f"    # multipliers leave out; {_words(errors.source)}"
+    yield f"    # multipliers leave out; {printable(errors.source)}"
     yield f"    twist_covariance_diagonal: [{', '.join(map(_number, diagonal))}]"
 
 
@@ -108,7 +108,7 @@ def _filter(errors: MotionErrors | None, pace: Pace | None) -> Iterable[str]:
     yield "ekf_filter_node:"
     yield "  ros__parameters:"
     yield f"    # x, y [m^2/s] and yaw [rad^2/s] {_at(pace)}, with wheel odometry alone;"
-    yield f"    # {_words(errors.source)}"
+    yield f"    # {printable(errors.source)}"
     yield "    # The other variances are those of robot_localization's example: not measured."
     yield "    dynamic_process_noise_covariance: false"
     yield f"    process_noise_covariance: [{_rows(np.diag(noise))}]"
@@ -164,8 +164,9 @@ def _rows(matrix: FloatArray) -> str:
 
 def _key(name: str) -> str:
     """A name as a YAML string."""
-    return '"' + _words(name).replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return '"' + printable(name).replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def _words(name: str) -> str:
-    return "".join(c if c.isprintable() else "?" for c in name)
+def printable(text: str) -> str:
+    """A text as one line of YAML: names may hold line breaks."""
+    return "".join(c if c.isprintable() else "?" for c in text)

@@ -76,6 +76,7 @@ def export(
     Example:
       terrain-odometry export results --to ros --to mcap --terrain grass --out exported
     """
+    from odometry.export.ros_yaml import printable
     from odometry.export.source import read_export_source
     from odometry.run import Robot
     from odometry.set_of_robot import set_notes
@@ -96,7 +97,7 @@ def export(
         notes = set_notes(exported.parameters, Robot(exported.track_width_m))
         for note in notes:
             click.echo(f"Warning: {note}", err=True)
-        lines = "".join(f"# {' '.join(note.split())}\n" for note in notes)
+        lines = "".join(f"# {printable(note)}\n" for note in notes)
         exported = replace(exported, comment=exported.comment + lines)
     with output.writing() as part:
         for name in dict.fromkeys(formats):

@@ -10,7 +10,9 @@ from odometry.export import ros_file
 from odometry.export.drive_numbers import MotionErrors, Pace, drive_numbers
 from odometry.export.ros_yaml import ros_yaml
 from odometry.export.source import read_export_source
+from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
+from odometry.run import Robot
 from tests.odometry.export.result_folder import TABLE, YAW_RATE_RAD_S, write_results
 
 ruamel = pytest.importorskip("ruamel.yaml")
@@ -110,6 +112,16 @@ def test_a_result_gives_its_pace_and_errors(tmp_path):
     diagonal = parsed(text)["diff_drive_controller"]["ros__parameters"]["twist_covariance_diagonal"]
     expected = errors.twist_variances(source.pace, (0.05, 0.1))
     np.testing.assert_allclose(np.array(diagonal)[[0, 1, 5]], expected, rtol=1e-5)
+
+
+def test_any_name_of_what_is_left_out_stays_a_comment(tmp_path):
+    file, model = tmp_path / "set.toml", MODELS["full_linear"]
+    ice = TerrainParameters(model.name, model.guess(Robot(0.6)))
+    terrains = {"sand": TABLE, "ice\nfield: 1": ice}
+    write_parameters(file, ParameterSet(terrains, {"track_width": 0.6}))
+    ros_file.write(read_export_source(file, terrain="sand"), tmp_path)
+    content = parsed((tmp_path / "ros.yaml").read_text())
+    assert set(content) == {"diff_drive_controller", "slip_by_terrain"}
 
 
 def test_a_controller_knows_one_terrain(tmp_path):
