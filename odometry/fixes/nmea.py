@@ -43,6 +43,7 @@ def read_nmea(file: Path) -> FixFile | None:
             return None
     with opened_lines(file, TrajectoryError) as lines:
         places, days = _sentences(lines, file)
+    days = _since_first_fix(days, places) or days
     if not places or not days:
         missing = "RMC or ZDA, which state the date" if places else "GGA with a right checksum"
         raise TrajectoryError(f"{file}: it has no sentence {missing}")
@@ -61,12 +62,13 @@ def read_nmea(file: Path) -> FixFile | None:
 
 
 Place = tuple[int, float, tuple[str, ...]]  # line, seconds of the day, cells
+Stamp = tuple[int, float, bool]  # line, seconds since 1970, whether the receiver vouches for it
 
 
-def _sentences(lines: Iterator[str], file: Path) -> tuple[list[Place], list[tuple[int, float]]]:
+def _sentences(lines: Iterator[str], file: Path) -> tuple[list[Place], list[Stamp]]:
     """Places, and full stamps of the sentences that state a date, each with its line."""
     places: list[Place] = []
-    stamps: list[tuple[int, float]] = []
+    stamps: list[Stamp] = []
     for number, line in enumerate(lines, 1):
         found = SENTENCE.search(line)
         if found is None or reduce(xor, found[1].encode()) != int(found[3], 16):
@@ -78,12 +80,18 @@ def _sentences(lines: Iterator[str], file: Path) -> tuple[list[Place], list[tupl
             elif (
                 found[2] != "GGA" and fields[1] and (day_s := _day_s(found[2], fields)) is not None
             ):
-                stamps.append((number, day_s + _of_day_s(fields[1])))
+                stamps.append((number, day_s + _of_day_s(fields[1]), found[2] == "RMC"))
         except (ValueError, IndexError) as error:
             raise TrajectoryError(
                 f"{file}: row {number}: {found[0][:80]!r} cannot be read as {found[2]}"
             ) from error
     return places, stamps
+
+
+def _since_first_fix(stamps: list[Stamp], places: list[Place]) -> list[Stamp]:
+    """Without those of ZDA before there is a fix: it states a date that nobody knows yet."""
+    begin = next((line for line, _, cells in places if cells[-1] != KINDS[0]), 0)
+    return [stamp for stamp in stamps if stamp[2] or stamp[0] > begin]
 
 
 def _of_day_s(text: str) -> float:
@@ -122,10 +130,10 @@ def _degrees(text: str, side: str) -> str:
     return repr(-value if side in {"S", "W"} else value)
 
 
-def _dated(places: list[Place], stamps: list[tuple[int, float]]) -> list[str]:
+def _dated(places: list[Place], stamps: list[Stamp]) -> list[str]:
     """Seconds since 1970 of times of day: nearest to the stamp that is nearest in the file."""
     numbers, of_day_s = np.array([place[:2] for place in places]).T
-    lines, known_s = np.array(stamps).T
+    lines, known_s = np.array([stamp[:2] for stamp in stamps]).T
     near_s = known_s[np.searchsorted((lines[1:] + lines[:-1]) / 2, numbers)]
     stamps_s = np.floor(near_s / DAY_S) * DAY_S + of_day_s
     return [*map(repr, (stamps_s + DAY_S * np.round((near_s - stamps_s) / DAY_S)).tolist())]

@@ -90,8 +90,14 @@ def test_dates_of_a_long_log_are_found_in_one_go(tmp_path, monkeypatch):
     assert len(calls) == 1
 
 
-def test_a_date_before_the_first_fix_is_none(tmp_path):
-    early = sentence("GNRMC", "000005.00", "V", *[""] * 6, "060180", "", "", "N")
+@pytest.mark.parametrize(
+    "early",
+    [
+        sentence("GNRMC", "000005.00", "V", *[""] * 6, "060180", "", "", "N"),
+        sentence("GNZDA", "000005.00", "06", "01", "1980", "00", "00"),
+    ],
+)
+def test_a_date_before_the_first_fix_is_none(tmp_path, early):
     lines = [rmc(STAMPS_S[0]), early, early]
     lines += [gga(*each) for each in zip(STAMPS_S, LATITUDES, LONGITUDES, strict=True)]
     assert_usual(read_fixes(log(tmp_path, *lines)))
