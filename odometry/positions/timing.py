@@ -27,7 +27,7 @@ PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and be
 # Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
 LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
 EXACT_M = 1e-9  # misfits below are rounding, as of a robot that stands
-SHORT_CLEARLY, SHORT_APART_S = 0.95, 0.15  # a robot that slides in turns is late over 20 m alone
+SHORT_APART_S = 0.15  # a robot that slides in its turns is late over 20 m alone
 BESIDE_TREADS = 0.95  # of the misfit with late treads alone, whatever the rates mean
 
 
@@ -123,9 +123,7 @@ class _Compared:
     def _late_in_short_pieces(self, found_s: float, early_s: float) -> bool:
         """Whether pieces of SHORT_M say the same: positions are late over any length."""
         short = [self._misfit_m(late_s, late_s + early_s, SHORT_M) for late_s in TRIED_S]
-        best = int(np.argmin(short))
-        near = abs(TRIED_S[best] - found_s) <= SHORT_APART_S
-        return bool(near and short[best] <= SHORT_CLEARLY * short[IN_TIME])
+        return bool(abs(TRIED_S[np.argmin(short)] - found_s) <= SHORT_APART_S)
 
     def _misfit_m(self, late_s: float, turns_late_s: float, length_m: float = LENGTH_M) -> float:
         speeds = _delayed(self._record, self._speeds, late_s)
