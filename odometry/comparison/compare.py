@@ -19,7 +19,8 @@ from odometry.comparison.training_horizons import training_horizon_errors
 from odometry.errors import ComparisonError, OdometryError
 from odometry.models.catalogue import MODELS
 from odometry.parameters import read_parameters
-from odometry.positions.heading import FoundHeading, headed
+from odometry.positions.heading import FoundHeading, found_heading, needs_heading
+from odometry.positions.timing import timings_of
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.measured_poses import YAW_FOUND
@@ -158,12 +159,14 @@ def _with_poses(
     """Runs that have poses, by folder why others cannot be evaluated, and headings found."""
     usable, reasons = [], {}
     found: list[FoundHeading] = []
+    timings = iter(timings_of([run for run in runs if needs_heading(run)]))
     for run in runs:
         try:
-            (with_yaw,), headings = headed([run])
+            heading = found_heading(run, next(timings)) if needs_heading(run) else None
+            with_yaw = run if heading is None else heading.run
             record_of(with_yaw, config.training)
             usable.append(with_yaw)
-            found += headings
+            found += [heading] if heading else []
         except OdometryError as error:
             reasons[str(run.folder)] = str(error)
     return usable, reasons, found

@@ -208,7 +208,7 @@ def headed(runs: Sequence[Run]) -> Headed:
     """
     lacking = [i for i, run in enumerate(runs) if needs_heading(run)]
     timings = timings_of([runs[i] for i in lacking])
-    found = {i: _found(runs[i], timing) for i, timing in zip(lacking, timings, strict=True)}
+    found = {i: found_heading(runs[i], timing) for i, timing in zip(lacking, timings, strict=True)}
     with_yaw = tuple(found[i].run if i in found else run for i, run in enumerate(runs))
     return Headed(with_yaw, tuple(found.values()))
 
@@ -218,8 +218,8 @@ def needs_heading(run: Run) -> bool:
     return lacks_yaw(run) and (run.pose is None or YAW_FOUND not in run.pose)
 
 
-def found_heading(run: Run) -> FoundHeading:
-    """Find the yaw of a run from its positions.
+def found_heading(run: Run, timing: Timing | None = None) -> FoundHeading:
+    """Find the yaw of a run from its positions, and their timing where it is not given.
 
     A model identified on the shapes of stretches (`identification.from_positions`) or the
     gyroscope carries the robot between positions; smoothers put its pose among all of them.
@@ -230,10 +230,8 @@ def found_heading(run: Run) -> FoundHeading:
         If there are too few positions for a model, they contradict the treads, or do not determine
         the yaw (`yaw_from_positions`).
     """
-    return _found(run, *timings_of([run]))
-
-
-def _found(run: Run, timing: Timing) -> FoundHeading:
+    if timing is None:
+        (timing,) = timings_of([run])
     late_s = timing.positions_late_s
     carrier = carrier_of(timing.undone(run))
     found = yaw_at_positions(carrier)

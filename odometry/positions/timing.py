@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import OdometryError
 from odometry.run import Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
@@ -55,30 +56,29 @@ class Timing(NamedTuple):
 def timings_of(runs: Sequence[Run]) -> tuple[Timing, ...]:
     """Timing of runs of one recorder: what a yaw rate means is the same in all of them.
 
-    Zero where the positions do not clearly say otherwise, or no gyroscope was recorded.
-
-    Raises
-    ------
-    WindowError
-        If a run has too few positions.
+    Zero where the positions do not clearly say otherwise or are too few, or no gyroscope was
+    recorded.
     """
-    records = [position_record_with_yaw_rates(run, WindowConfig()) for run in runs]
-    compared = {
-        i: _Compared(record, record.inputs.yaw_rate_rad_s)
-        for i, record in enumerate(records)
-        if record.inputs.yaw_rate_rad_s is not None
-    }
+    compared = [_compared(run) for run in runs]
     rises, positions = np.zeros(len(PERIODS)), 1
-    for i, of in compared.items():
-        least = np.maximum(of.misfits_m.min(axis=(1, 2)), EXACT_M)
-        rises += len(records[i].poses) * np.log(least / least[0])
-        positions += len(records[i].poses)
+    for of in compared:
+        if of is not None:
+            least = np.maximum(of.misfits_m.min(axis=(1, 2)), EXACT_M)
+            rises += of.positions * np.log(least / least[0])
+            positions += of.positions
     best = int(np.argmin(rises))
     if rises[best] > positions * np.log(MEANS_CLEARLY):
         best = 0
-    return tuple(
-        compared[i].timing(best) if i in compared else Timing() for i in range(len(records))
-    )
+    return tuple(Timing() if of is None else of.timing(best) for of in compared)
+
+
+def _compared(run: Run) -> "_Compared | None":
+    try:
+        record = position_record_with_yaw_rates(run, WindowConfig())
+    except OdometryError:
+        return None
+    rates = record.inputs.yaw_rate_rad_s
+    return None if rates is None else _Compared(record, rates)
 
 
 class _Compared:
@@ -86,11 +86,13 @@ class _Compared:
 
     Attributes
     ----------
+    positions : int
     misfits_m : (3, 2, D)
         For each of PERIODS and of TRIED_S: positions late, and treads alone.
     """
 
     def __init__(self, record: Record, rates_rad_s: FloatArray) -> None:
+        self.positions = len(record.poses)
         self._record = record
         self._rates = rates_rad_s
         self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)

@@ -1,13 +1,16 @@
 """When positions and yaw rates were measured, against the delays that were put in."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from odometry.comparison.compare import _with_poses
+from odometry.comparison.config import ComparisonConfig
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
-from odometry.positions.timing import timings_of
+from odometry.positions.timing import Timing, timings_of
 from odometry.run import Run
 from tests.odometry.positions_drives import drive, emptied, table
 from tests.studies.positions import emptied as without_yaw
@@ -112,3 +115,19 @@ def test_a_robot_that_slides_in_its_turns_is_not_late(shared_data):
     """On ice the way follows the turns late over 20 m, and not over 5 m."""
     run = Run.read(shared_data / "motion" / "warthog_ice_20240730_1630_s00")
     assert timings_of([without_yaw(run, noise_m=0.02)])[0].positions_late_s == 0.0
+
+
+def test_compare_reads_the_rates_of_all_runs_alike_and_leaves_out_what_has_no_path():
+    clear, noisy = (
+        emptied(
+            with_means(
+                drive(3, noise_m=noise_m, gyroscope=True, duration_s=200.0, name=f"{noise_m}"), 0.1
+            )
+        )
+        for noise_m in (0.003, 0.3)
+    )
+    short = replace(clear, folder=Path("short"), pose=clear.pose.rows(slice(2)))
+    usable, reasons, _ = _with_poses([clear, short, noisy], ComparisonConfig())
+    expected = found_heading(noisy, Timing(0.0, timings_of([clear, noisy])[1].rates_early_s)).run
+    assert np.array_equal(usable[1].pose["yaw"], expected.pose["yaw"], equal_nan=True)
+    assert list(reasons) == ["short"]
