@@ -80,7 +80,7 @@ def _of_groups(patches: LabelledPatches) -> Iterator[str]:
             f"label, such as {one} ({label_of[one]}) and {other} ({label_of[other]}): one scene "
             "cannot be both, and names of either mean little. Move or delete the wrong one"
         )
-    if alike := [pair for pair in alike if pair not in contrary]:
+    if alike := [pair for pair in alike if label_of[pair[0]] == label_of[pair[1]]]:
         one, other = alike[0]
         apart = {label_of[one] for one, other in alike if scene_of[one] != scene_of[other]}
         yield (
