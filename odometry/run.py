@@ -16,6 +16,7 @@ from odometry.table import Table
 
 UNKNOWN = "unknown"  # the reserved terrain name: nothing is known of this terrain
 UNNAMED_TERRAIN = "ground"  # of a run that does not name its terrain; the name in parameter sets
+SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,10 @@ class Robot:
     width: float | None = None
     wheel_radius: float | None = None
     mass: float | None = None
+
+    def may_have_width(self, track_width_m: float) -> bool:
+        """Whether a stated track width may be of this robot; NaN states none."""
+        return not abs(self.track_width / track_width_m - 1) > SAME_WIDTH
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 
-SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 # As which a robot turns, in track widths; printed sets have up to 14 (Baril 2020, concrete)
 LEAST_WIDTHS, MOST_WIDTHS = 0.5, 20.0
 LEAST_GAIN = 0.1  # metres of the robot for each metre of its treads
@@ -42,7 +41,7 @@ def other_width(parameters: ParameterSet, robot: Robot) -> str:
     tables = [table for table in parameters.terrains.values() if table.model != IDEAL]
     stated = [of.get("track_width") for of in (parameters.vehicle, *(t.values for t in tables))]
     for width in stated:
-        if isinstance(width, float | int) and abs(width / robot.track_width - 1) > SAME_WIDTH:
+        if isinstance(width, float | int) and not robot.may_have_width(width):
             named = parameters.vehicle.get("name")
             return (
                 f"the parameter set is of a robot of track width {width:g} m"

@@ -14,7 +14,6 @@ from odometry.run import UNKNOWN, Robot, Run
 UNLIKE_SHARE = 0.5  # of the time: a run of which more is unknown is of no terrain of the model
 MOST_REPEATS = 0.3  # of samples; real recordings repeat 0.02, rounded to 0.02 rad/s 0.33 and more
 REPEATS_MARGIN = 0.1  # above the runs of a model that repeat as much
-SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 
 
 @dataclass(frozen=True)
@@ -98,9 +97,8 @@ def check_repeats(model: FeelModel, windows: FeelWindows, where: str) -> None:
 
 def check_robot(model: FeelModel, robot: Robot, where: str) -> None:
     """Raise RunFolderError unless a robot is as wide as that of the model."""
-    width = robot.track_width
-    if abs(width / model.track_width_m - 1) > SAME_WIDTH:
+    if not robot.may_have_width(model.track_width_m):
         raise RunFolderError(
-            f"{where}: a robot of track width {width:g} m; the model is of one of "
+            f"{where}: a robot of track width {robot.track_width:g} m; the model is of one of "
             f"{model.track_width_m:g} m: how terrain feels on one robot says nothing of another"
         )

@@ -69,6 +69,19 @@ class FixColumns:
     states: tuple[Named, ...]
 
 
+def solution_columns(
+    latitude: str, longitude: str, height: str, stamp: str, kind: str
+) -> FixColumns:
+    """Those of a receiver's log: degrees, metres, seconds, and the kind of each solution."""
+    return FixColumns(
+        Named(latitude, "deg"),
+        Named(longitude, "deg"),
+        Named(height, "m"),
+        (Named(stamp, "s"),),
+        (Named(kind, "solution"),),
+    )
+
+
 @dataclass(frozen=True)
 class Header:
     """Lines above the header, the separator, and the names of the columns of a file without one."""

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.errors import TrajectoryError
-from odometry.fixes.fix_columns import MOST_LINES, FixColumns, Named
+from odometry.fixes.fix_columns import MOST_LINES, solution_columns
 from odometry.fixes.fix_file import FixFile
 from odometry.io.files import opened_lines
 
@@ -48,13 +48,7 @@ def read_nmea(file: Path) -> FixFile | None:
         missing = "RMC or ZDA, which state the date" if places else "GGA with a right checksum"
         raise TrajectoryError(f"{file}: it has no sentence {missing}")
     rows = [(dated, *place[2]) for dated, place in zip(_dated(places, days), places, strict=True)]
-    named = FixColumns(
-        Named(LATITUDE, "deg"),
-        Named(LONGITUDE, "deg"),
-        Named(HEIGHT, "m"),
-        (Named(TIME, "s"),),
-        (Named(QUALITY, "solution"),),
-    )
+    named = solution_columns(LATITUDE, LONGITUDE, HEIGHT, TIME, QUALITY)
     cells = {
         name: list(column) for name, column in zip(NAMES, zip(*rows, strict=True), strict=True)
     }

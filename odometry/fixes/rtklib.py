@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.errors import TrajectoryError
-from odometry.fixes.fix_columns import FixColumns, Named
+from odometry.fixes.fix_columns import solution_columns
 from odometry.fixes.fix_file import FixFile, is_number
 from odometry.fixes.fix_stamps import date_s
 from odometry.io.files import opened_lines
@@ -63,13 +63,7 @@ def read_rtklib(file: Path) -> FixFile | None:
     cells = {name: list(columns[name]) for name in (LATITUDE, LONGITUDE, HEIGHT)}
     kinds = [KINDS[int(q)] if q in DIGITS else q for q in columns[QUALITY]]
     time = system if system == "UTC" else f"{system}, made UTC"
-    named = FixColumns(
-        Named(LATITUDE, "deg"),
-        Named(LONGITUDE, "deg"),
-        Named(HEIGHT, "m"),
-        (Named(time, "s"),),
-        (Named(QUALITY, "solution"),),
-    )
+    named = solution_columns(LATITUDE, LONGITUDE, HEIGHT, time, QUALITY)
     return FixFile(file, named, np.array([*rows]), cells | {time: stamps, QUALITY: kinds})
 
 

@@ -24,7 +24,6 @@ from odometry.windows.spans import within
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
 
-SAME_WIDTH = 0.1  # share by which track widths of one robot may differ
 SETTLED_S = 1e4  # after which a chain has forgotten where it began
 
 
@@ -75,11 +74,11 @@ def judged_signals(run: Run, mode_set: ModeSet) -> Signals:
     RunFolderError
         If the run is of a robot of another track width, or lacks what the modes are recognised by.
     """
-    width, of_modes = run.robot.track_width, mode_set.modes.track_width
-    if abs(width / of_modes - 1) > SAME_WIDTH:  # a set of older versions states none: NaN
+    of_modes = mode_set.modes.track_width
+    if not run.robot.may_have_width(of_modes):  # a set of older versions states none: NaN
         raise RunFolderError(
-            f"{run.folder}: a robot of track width {width:g} m; the modes are of one of "
-            f"{of_modes:g} m: how terrain turns one robot says nothing of another"
+            f"{run.folder}: a robot of track width {run.robot.track_width:g} m; the modes are of "
+            f"one of {of_modes:g} m: how terrain turns one robot says nothing of another"
         )
     signals = mode_set.modes.signals(run)
     if run.truth is None or "terrain" not in run.truth:

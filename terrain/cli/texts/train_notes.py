@@ -100,11 +100,10 @@ def _of_origins(patches: LabelledPatches) -> Iterator[str]:
     """Where all photographs of a terrain are of an origin of their own."""
     apart = set_apart(dict(zip(patches.photos, patches.labels, strict=True)))
     if apart:
-        terrains = "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
         yield (
             "Note: the files say that photographs of a terrain have an origin that those of no "
-            f"other terrain have: {terrains}. What is held out has the same origin. A model that "
-            "recognises the camera, and not the terrain, would seem to be right: test it on "
+            f"other terrain have: {_listed(apart)}. What is held out has the same origin. A model "
+            "that recognises the camera, and not the terrain, would seem to be right: test it on "
             "photographs of several terrains by one camera (classify)"
         )
 
@@ -115,13 +114,16 @@ def _of_sharpness(patches: LabelledPatches) -> Iterator[str]:
     label_of = dict(zip(patches.photos, patches.labels, strict=True))
     apart = set_apart_by_pixels({photo: label_of[photo] for photo in photo_of.values()})
     if apart:
-        terrains = "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
         yield (
             "Note: by their pixels most photographs of a terrain are unlike most of any other: "
-            f"{terrains}. Less sharp ones are blurred, enlarged or out of focus, or show a smooth "
-            "surface alone. What is held out is alike, so that its score says little where that "
-            "is the camera: test the model on photographs of several terrains by one (classify)"
+            f"{_listed(apart)}. Less sharp ones are blurred, enlarged or out of focus, or show a "
+            "smooth surface alone. What is held out is alike, so that its score says little where "
+            "that is the camera: test the model on photographs of several by one (classify)"
         )
+
+
+def _listed(apart: dict[str, str]) -> str:
+    return "; ".join(f"{terrain} ({how})" for terrain, how in apart.items())
 
 
 def _grouped(patches: LabelledPatches) -> set[Path]:
