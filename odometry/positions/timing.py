@@ -16,20 +16,20 @@ from odometry.errors import OdometryError
 from odometry.run import Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.gyroscope_yaw import path_misfit
+from odometry.windows.gyroscope_yaw import PathShape
 from odometry.windows.record import Record
 from odometry.windows.stretches import position_record_with_yaw_rates
 
 LONGEST_S, COARSE_S, FINE_S = 1.0, 0.1, 0.01
 TRIED_S = np.arange(-LONGEST_S, LONGEST_S + COARSE_S / 2, COARSE_S)
 IN_TIME = len(TRIED_S) // 2
-LENGTH_M, SHORT_M = 20.0, 5.0  # of the pieces of path that are compared
+# Pieces of path that are compared [m]: long ones alone are late where a robot slides in turns.
+LENGTHS_M = (5.0, 10.0, 20.0, 40.0)
 PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
-# Shares of the misfit as recorded, at most; 0.92 and 0.97 in 26 recordings at 20 Hz as they are:
-LATE_CLEARLY, MEANS_CLEARLY = 0.9, 0.9
+# Shares of the misfit as recorded, at most: in the geometric mean over lengths, and over each.
+LATE_CLEARLY, LATE_EACH, MEANS_CLEARLY = 0.9, 0.95, 0.9
+BESIDE_TREADS = 0.97  # of the misfit with late treads alone, whatever the rates mean
 EXACT_M = 1e-9  # misfits below are rounding, as of a robot that stands
-SHORT_APART_S = 0.15  # a robot that slides in its turns is late over 20 m alone
-BESIDE_TREADS = 0.95  # of the misfit with late treads alone, whatever the rates mean
 
 
 class Timing(NamedTuple):
@@ -63,8 +63,8 @@ def timings_of(runs: Sequence[Run]) -> tuple[Timing, ...]:
     rises, positions = np.zeros(len(PERIODS)), 1
     for of in compared:
         if of is not None:
-            least = np.maximum(of.misfits_m.min(axis=(1, 2)), EXACT_M)
-            rises += of.positions * np.log(least / least[0])
+            least = of.mean_logs.min(axis=(1, 2))
+            rises += of.positions * (least - least[0])
             positions += of.positions
     best = int(np.argmin(rises))
     if rises[best] > positions * np.log(MEANS_CLEARLY):
@@ -87,8 +87,9 @@ class _Compared:
     Attributes
     ----------
     positions : int
-    misfits_m : (3, 2, D)
-        For each of PERIODS and of TRIED_S: positions late, and treads alone.
+    mean_logs : (3, 2, D)
+        Logarithm of the misfit, mean over LENGTHS_M. For each of PERIODS and of TRIED_S:
+        positions late, and treads alone.
     """
 
     def __init__(self, record: Record, rates_rad_s: FloatArray) -> None:
@@ -97,40 +98,39 @@ class _Compared:
         self._rates = rates_rad_s
         self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
         self._early_s = [periods * _period_s(record) for periods in PERIODS]
-        self.misfits_m = np.array(
+        self._shape = PathShape(record, LENGTHS_M)
+        self._logs = np.array(
             [
                 [
-                    [self._misfit_m(late_s, late_s + early_s) for late_s in TRIED_S],
-                    [self._misfit_m(late_s, early_s) for late_s in TRIED_S],
+                    [self._log_misfits(late_s, late_s + early_s) for late_s in TRIED_S],
+                    [self._log_misfits(late_s, early_s) for late_s in TRIED_S],
                 ]
                 for early_s in self._early_s
             ]
         )
+        self.mean_logs = self._logs.mean(axis=-1)
 
     def timing(self, meaning: int) -> "Timing":
         """How late positions are, for one meaning of the yaw rates; 0 where that is not clear."""
-        of_positions, of_treads = self.misfits_m[meaning, 0], self.misfits_m[:, 1]
+        of_positions, of_treads = self.mean_logs[meaning, 0], self.mean_logs[:, 1]
         early_s, best = self._early_s[meaning], int(np.argmin(of_positions))
+        by_length = self._logs[meaning, 0]
         clear = (
             0 < best < len(TRIED_S) - 1
-            and of_positions[best] <= LATE_CLEARLY * of_positions[IN_TIME]
-            and of_positions[best] <= BESIDE_TREADS * of_treads.min()
+            and of_positions[best] <= of_positions[IN_TIME] + np.log(LATE_CLEARLY)
+            and of_positions[best] <= of_treads.min() + np.log(BESIDE_TREADS)
+            and (by_length[best] <= by_length[IN_TIME] + np.log(LATE_EACH)).all()
         )
-        if not clear or not self._late_in_short_pieces(TRIED_S[best], early_s):
+        if not clear:
             return Timing(0.0, early_s)
         near_s = TRIED_S[best] + np.arange(-COARSE_S, COARSE_S + FINE_S / 2, FINE_S)
-        misfits_m = [self._misfit_m(late_s, late_s + early_s) for late_s in near_s]
-        return Timing(float(near_s[np.argmin(misfits_m)]), early_s)
+        logs = [self._log_misfits(late_s, late_s + early_s).mean() for late_s in near_s]
+        return Timing(float(near_s[np.argmin(logs)]), early_s)
 
-    def _late_in_short_pieces(self, found_s: float, early_s: float) -> bool:
-        """Whether pieces of SHORT_M say the same: positions are late over any length."""
-        short = [self._misfit_m(late_s, late_s + early_s, SHORT_M) for late_s in TRIED_S]
-        return bool(abs(TRIED_S[np.argmin(short)] - found_s) <= SHORT_APART_S)
-
-    def _misfit_m(self, late_s: float, turns_late_s: float, length_m: float = LENGTH_M) -> float:
+    def _log_misfits(self, late_s: float, turns_late_s: float) -> FloatArray:
         speeds = _delayed(self._record, self._speeds, late_s)
         rates = _delayed(self._record, self._rates, turns_late_s)
-        return path_misfit(self._record, speeds, rates, length_m)
+        return np.log(np.maximum(self._shape.misfits_m(speeds, rates), EXACT_M))
 
 
 def _period_s(record: Record) -> float:

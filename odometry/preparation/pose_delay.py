@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.explained_lags import explained_lags
-from odometry.checks.stamps.late_positions import sure_lag
+from odometry.checks.stamps.late_positions import path_delay_s
 from odometry.checks.stamps.short_delay import short_delay
 from odometry.checks.stamps.timing import found_in, lags_of, timing
 from odometry.estimation.config import IcrEkfConfig
@@ -26,7 +26,7 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
         `pose_delay_s` is the delay of the stamps. With 0, and with `watch_sensors`, it
         is searched for unless `causal`: where the run has a gyroscope, by the correlation of its
         yaw rate with that of the poses (`odometry.checks.stamps.timing`), of positions without yaw
-        by their speed and that of treads that turn in step with it, and used only where that is
+        by the shape of their path (`odometry.positions.timing`), and used only where that is
         certain. Of positions and yaw that are of two times (`yaw_late`, `positions_late` of the
         check) the part that is late, or early, is moved alone.
 
@@ -56,11 +56,11 @@ def _searched(run: Run, pose: Table) -> Moved:
     delay_s = _certain_delay_s(evidence, {finding.name for finding in named})
     if delay_s is not None:
         return _moved(run, pose, delay_s, f"by {delay_s:.3f} s against the gyroscope")
-    of_positions = sure_lag(evidence)
-    if of_positions is None:
+    late_s = path_delay_s(evidence)
+    if late_s <= 0:
         return run, ()
-    text = f"by {of_positions.seconds:.3f} s against the treads, which turn as the gyroscope does"
-    return _moved(run, pose, of_positions.seconds, text)
+    text = f"by {late_s:.3f} s against the path of treads and gyroscope"
+    return _moved(run, pose, late_s, text)
 
 
 def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:

@@ -1,5 +1,7 @@
 """The yaw rate of a gyroscope less its bias, which positions determine."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,8 +35,10 @@ def yaw_rates_of(record: Record) -> FloatArray | None:
     rates = np.append(turn / steps_s, 0.0)
     speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
 
+    shape = PathShape(record, (LENGTH_M,))
+
     def best_of(biases: FloatArray) -> float:
-        misfits = [path_misfit(record, speeds, rates - bias) for bias in biases]
+        misfits = [shape.misfits_m(speeds, rates - bias)[0] for bias in biases]
         return float(biases[np.argmin(misfits)])
 
     tried = np.linspace(-LARGEST_BIAS_RAD_S, LARGEST_BIAS_RAD_S, COARSE)
@@ -42,24 +46,40 @@ def yaw_rates_of(record: Record) -> FloatArray | None:
     return np.asarray(rates - best_of(best_of(tried) + np.linspace(-step, step, FINE)))
 
 
-def path_misfit(
-    record: Record, speeds_m_s: FloatArray, rates_rad_s: FloatArray, length_m: float = LENGTH_M
-) -> float:
-    """Sum of distances [m] between measured positions and the path of yaw rates (N,).
+class PathShape:
+    """The shape of measured positions over pieces of path of some lengths [m].
 
-    The body moves by a share of the mean tread speeds (N,), and, forward and aside, by a length
-    times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each piece of
-    path of the length has a share and lengths of its own.
+    Each piece is of one stretch of the record.
     """
-    steps_s = np.append(np.diff(record.stamps_s), 0.0)
-    travel_m = record.travel_m[record.pose_samples]
-    pieces = np.floor(travel_m / length_m) + 1e6 * record.stretch
-    _, piece = np.unique(pieces, return_inverse=True)
-    measured = _centred(record.poses[:, 0] + 1j * record.poses[:, 1], piece)
-    forward, turning = (
-        _centred(_path(moved, rates_rad_s, steps_s)[record.pose_samples], piece)
-        for moved in (speeds_m_s, rates_rad_s)
-    )
+
+    def __init__(self, record: Record, lengths_m: Sequence[float]) -> None:
+        places = record.poses[:, 0] + 1j * record.poses[:, 1]
+        self._samples = record.pose_samples
+        self._steps_s = np.append(np.diff(record.stamps_s), 0.0)
+        travel_m = record.travel_m[record.pose_samples]
+        self._pieces = [
+            np.unique(np.floor(travel_m / each) + 1e6 * record.stretch, return_inverse=True)[1]
+            for each in lengths_m
+        ]
+        self._measured = [_centred(places, piece) for piece in self._pieces]
+
+    def misfits_m(self, speeds_m_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
+        """Sums of distances [m] between the positions and the path of yaw rates (N,), by length.
+
+        The body moves by a share of the mean tread speeds (N,), and, forward and aside, by a
+        length times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each
+        piece has a share and lengths of its own.
+        """
+        paths = [
+            _path(moved, rates_rad_s, self._steps_s)[self._samples]
+            for moved in (speeds_m_s, rates_rad_s)
+        ]
+        of_pieces = zip(self._measured, self._pieces, strict=True)
+        return np.array([_misfit_m(measured, paths, piece) for measured, piece in of_pieces])
+
+
+def _misfit_m(measured: ComplexArray, paths: Sequence[ComplexArray], piece: IntArray) -> float:
+    forward, turning = (_centred(path, piece) for path in paths)
     own = _summed(np.abs(forward) ** 2, piece).real
     share = _summed(np.conj(forward) * turning, piece) / np.maximum(own, TINY)
     turning = turning - share[piece] * forward  # what is not along the other

@@ -1,6 +1,8 @@
-"""Positions without yaw that are late: the speed between positions against that of the treads.
+"""Positions without yaw that are late: the shape of their path, or else their speed.
 
-The course would say more, but an antenna ahead of the centre turns it before the robot turns.
+With a gyroscope the whole path is compared, as where a yaw is found for such positions. Without
+one the speed between positions is compared with that of the treads: the course would say more, but
+an antenna ahead of the centre turns it before the robot turns.
 """
 
 from collections.abc import Callable, Iterator
@@ -10,11 +12,13 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import WIDTH
+from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import changed
-from odometry.checks.stamps.timing import lag_of_treads
 from odometry.checks.statistics.lag import Lag, Rate, lag_of_rates
 from odometry.checks.statistics.measured_between import measured_between
+from odometry.positions.timing import timings_of
+from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
 
 LEAST_WIDTH_S = 0.5
@@ -25,10 +29,6 @@ SPINNING = (
     0.6  # m for each metre of the treads, below which treads spin, and the robot follows late
 )
 TOGETHER = 0.7  # share of the pieces that have one lag
-# Where the gyroscope turns at once as the treads do, the robot follows them: positions of 15 real
-# recordings that go as far as their treads are then at most 0.1 s late or early.
-IN_STEP_S, LEAST_IN_STEP_S = 0.1, 0.2
-CORRELATED, GOING = 0.9, 0.8  # of the speeds; m for each metre of the treads
 # Between positions and yaw; real recordings whose treads hold have at most 0.22 s with four pieces
 # or more, one of three pieces 0.4.
 LEAST_APART_S, MOST_APART_S, LEAST_PIECES = 0.3, 1.5, 4
@@ -37,55 +37,66 @@ MOST_LOST = 0.1  # of the recording: speeds held in gaps of the odometry are of 
 
 
 def late_positions(evidence: Evidence) -> Iterator[Finding]:
-    """Positions whose speed rises and falls later, or earlier, than that of the treads."""
+    """Positions that are later, or earlier, than the treads: by their path, or by their speed."""
+    by_path_s = path_delay_s(evidence)
+    if by_path_s:
+        yield _by_path(by_path_s)
+        return
     lag = position_lag(evidence)
     if lag is None or lag.together < TOGETHER:
         return
-    in_step = is_in_step(evidence, lag)
-    least_s = LEAST_IN_STEP_S if in_step else LEAST_LAG_S
-    if abs(lag.seconds) < max(least_s, CERTAIN * lag.sigma_s):
-        return
+    if abs(lag.seconds) >= max(LEAST_LAG_S, CERTAIN * lag.sigma_s):
+        yield _by_speed(lag)
+
+
+@once
+def path_delay_s(evidence: Evidence) -> float:
+    """How late positions without yaw are beside treads and gyroscope; 0 where it is not clear."""
+    if evidence.yaw_measured or evidence.yaw_rate is None or evidence.run.pose is None:
+        return 0.0
+    return timings_of([evidence.run])[0].positions_late_s
+
+
+def _by_path(late_s: float) -> Finding:
+    word, opposite = ("late", "early") if late_s > 0 else ("early", "late")
+    return Finding(
+        "pose_late",
+        Level.WARNING,
+        f"positions are {abs(late_s):.2f} s {word}: the path of treads and gyroscope has their "
+        "shape where it is taken so much " + ("earlier" if late_s > 0 else "later"),
+        f"Stamps of pose.csv are {word} (a delay of the receiver or of its transport), or those of "
+        f"odometry.csv and of the gyroscope are {opposite}",
+        f"Subtract {late_s:+.2f} s from the stamps of the poses",
+        mend=_moved(late_s),
+    )
+
+
+def _by_speed(lag: Lag) -> Finding:
     word, opposite = ("late", "early") if lag.seconds > 0 else ("early", "late")
     follows = (
         "; or the robot itself follows later (speeds that are commands, treads that spin when it "
         "speeds up)"
     )
-    yield Finding(
+    return Finding(
         "pose_late",
         Level.WARNING,
         f"the speed between positions is {abs(lag.seconds):.2f} +- {lag.sigma_s:.2f} s {word} "
         f"against that of the treads (correlation {lag.correlation:.2f})",
         f"Stamps of pose.csv are {word} (a delay of the receiver or of its transport), or those of "
-        f"odometry.csv{' and of the gyroscope' * in_step} are {opposite}"
-        f"{follows * (lag.seconds > 0)}: without yaw these cannot be "
+        f"odometry.csv are {opposite}{follows * (lag.seconds > 0)}: without yaw these cannot be "
         "distinguished",
         f"If it is the poses, subtract {lag.seconds:+.2f} s from their stamps",
-        mend=changed("pose", "t", lambda stamps_s: stamps_s - lag.seconds),
+        mend=_moved(lag.seconds),
     )
+
+
+def _moved(late_s: float) -> Callable[[Run], Run]:
+    return changed("pose", "t", lambda stamps_s: stamps_s - late_s)
 
 
 def position_lag(evidence: Evidence) -> Lag | None:
     """The lag of positions behind the treads; None with yaw, and where it cannot be estimated."""
     return None if evidence.yaw_measured else _speed_lag(evidence, MOST_LAG_S)
-
-
-def sure_lag(evidence: Evidence) -> Lag | None:
-    """The lag of positions that are surely late; None where they are not, or it is not known."""
-    lag = position_lag(evidence)
-    if lag is None or not is_in_step(evidence, lag):
-        return None
-    least_s = max(LEAST_IN_STEP_S, CERTAIN * lag.sigma_s)
-    return lag if lag.seconds > least_s and lag.together >= TOGETHER else None
-
-
-def is_in_step(evidence: Evidence, lag: Lag) -> bool:
-    """Whether the robot turns and goes as its treads do, so that it does not follow them late."""
-    if lag.pieces < LEAST_PIECES or lag.correlation < CORRELATED:
-        return False
-    if (evidence.metres_per_metre or 0.0) < GOING:
-        return False
-    of_treads = lag_of_treads(evidence)
-    return of_treads is not None and abs(of_treads.seconds) < IN_STEP_S
 
 
 def apart_from_yaw(evidence: Evidence, of_yaw: Lag | None) -> str | None:

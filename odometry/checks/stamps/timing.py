@@ -75,14 +75,6 @@ def lags_of(evidence: Evidence) -> dict[tuple[str, str], Lag]:
     }
 
 
-def lag_of_treads(evidence: Evidence) -> Lag | None:
-    """The lag of the treads behind the gyroscope; None where it cannot be estimated."""
-    signals = headings_by_sensor(evidence)
-    if "gyroscope" not in signals:
-        return None
-    return _lag(evidence, signals, "treads", "gyroscope")
-
-
 def headings_by_sensor(evidence: Evidence) -> dict[str, Signal]:
     """Heading of every sensor as a function of the stamp, turning the same way."""
     of = evidence.integrals

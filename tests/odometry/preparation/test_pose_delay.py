@@ -10,7 +10,7 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.pose_delay import without_pose_delay
 from odometry.run import Robot, Run
 from odometry.table import Table
-from tests.odometry.checks.drives import driven, starts_and_stops
+from tests.odometry.checks.drives import PERIOD_S, driven, starts_and_stops
 from tests.odometry.checks.faulty import late, put, treads, without_gyroscope
 from tests.odometry.estimation.sensor_drives import WIDTH, drive
 
@@ -105,12 +105,16 @@ def test_a_delay_that_is_given_is_taken():
     assert without_pose_delay(alone, IcrEkfConfig(pose_delay_s=0.1)) == (alone, ())
 
 
-@pytest.mark.parametrize(("late_s", "is_undone"), [(0.3, True), (0.8, True), (0.1, False)])
-def test_a_delay_of_positions_is_undone_where_treads_and_gyroscope_are_in_step(late_s, is_undone):
-    run = starts_and_stops(late_s, 5.0, 0.02)
+@pytest.mark.parametrize(("late_s", "is_undone"), [(0.0, False), (0.1, True), (0.8, True)])
+def test_a_delay_of_positions_is_undone_by_their_path(late_s, is_undone):
+    run = starts_and_stops(late_s + PERIOD_S, 5.0, 0.02)  # its positions are a period early
     assert without_pose_delay(without_gyroscope(run), IcrEkfConfig())[1] == ()
-    late_gyroscope = put(run, "odometry", gyro_z=np.roll(run.odometry["gyro_z"], 6))
-    assert without_pose_delay(late_gyroscope, IcrEkfConfig())[1] == ()
     _, events = without_pose_delay(run, IcrEkfConfig())
     assert [event.kind for event in events] == ["late_poses"] * is_undone
-    assert [event.values[0] for event in events] == pytest.approx([late_s] * is_undone, abs=0.06)
+    assert [event.values[0] for event in events] == pytest.approx([late_s] * is_undone, abs=0.03)
+
+
+def test_a_short_delay_beside_a_gyroscope_that_is_late_itself_stays():
+    run = starts_and_stops(0.3, 5.0, 0.02)
+    late_gyroscope = put(run, "odometry", gyro_z=np.roll(run.odometry["gyro_z"], 6))
+    assert without_pose_delay(late_gyroscope, IcrEkfConfig())[1] == ()
