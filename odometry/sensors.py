@@ -115,7 +115,8 @@ def _triple(
     )
 
 
-SILENT_S = 0.5  # between two samples: a turn between them is not known
+# Between two samples the turn is not known after both; a slow log is not silent from row to row.
+SILENT_S, SILENT_PERIODS = 0.5, 2.5
 
 
 @dataclass(frozen=True)
@@ -158,21 +159,24 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
     integrals = np.zeros((4, len(yaw_rate.stamps_s)))
-    for of, steps in zip(
-        integrals, _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s), strict=True
-    ):
+    silent_s = max(SILENT_S, SILENT_PERIODS * float(np.median(np.diff(yaw_rate.stamps_s))))
+    every = _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s, silent_s)
+    for of, steps in zip(integrals, every, strict=True):
         np.cumsum(steps, out=of[1:])
     return Gyroscope(yaw_rate.stamps_s, integrals.T)
 
 
 def step_integrals(stamps_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
-    """Integrals (G - 1, 4), as a `Gyroscope` has them, from each sample to the next."""
-    return np.column_stack(list(_steps(stamps_s, rates_rad_s)))
+    """Integrals (G - 1, 4), as a `Gyroscope` has them, from each sample to the next.
+
+    Silent after SILENT_S, however slow the samples are: what comes is not known.
+    """
+    return np.column_stack(list(_steps(stamps_s, rates_rad_s, SILENT_S)))
 
 
-def _steps(stamps_s: FloatArray, rates_rad_s: FloatArray) -> Iterator[FloatArray]:
+def _steps(stamps_s: FloatArray, rates_rad_s: FloatArray, silent_s: float) -> Iterator[FloatArray]:
     steps_s = np.diff(stamps_s)
     yield (rates_rad_s[1:] + rates_rad_s[:-1]) / 2 * steps_s
     yield (np.abs(rates_rad_s[1:]) + np.abs(rates_rad_s[:-1])) / 2 * steps_s
     yield np.abs(np.diff(rates_rad_s)) / 2 * steps_s
-    yield np.where(steps_s > SILENT_S, steps_s, 0.0)
+    yield np.where(steps_s > silent_s, steps_s, 0.0)

@@ -120,6 +120,7 @@ def relative_errors(
     config: EvaluationConfig,
     *,
     reference_yaw_rad: FloatArray | None = None,
+    reference_part: IntArray | None = None,
 ) -> RelativeErrors:
     """Compare motions over spatial horizons (data/README.md, Symbols and frame).
 
@@ -139,6 +140,9 @@ def relative_errors(
         Yaw of the reference with whole turns counted, as `windows.turns.counted_turns` gives it.
         Without it the error of yaw is taken to change by less than half a turn from one stamp of
         the reference to the next.
+    reference_part : (N,), optional
+        Numbers of parts between which whole turns are not known: windows from one to another have
+        no rotation.
 
     Returns
     -------
@@ -184,10 +188,12 @@ def relative_errors(
         _seen_from(poses[first], poses[last]),
     )
     length = travelled[last] - travelled[first]
+    turned = yaw_errors[last] - yaw_errors[first]
+    if reference_part is not None:
+        part = reference_part[both]
+        turned = np.where(part[first] == part[last], turned, np.nan)
     return RelativeErrors(
-        stamps_s[first],
-        np.hypot(*(ends - true_ends).T) / length,
-        np.abs(yaw_errors[last] - yaw_errors[first]) / length,
+        stamps_s[first], np.hypot(*(ends - true_ends).T) / length, np.abs(turned) / length
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.evaluation.reference_yaw import counted_reference_yaw
 from odometry.evaluation.relative import (
     EvaluationConfig,
     RelativeErrors,
@@ -15,7 +16,6 @@ from odometry.evaluation.relative import (
 from odometry.frames import POSE_COLUMNS
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from odometry.windows.turns import counted_turns
 
 JUDGED_EVERY_S = 2.0
 SILENT_S = 1.0
@@ -94,25 +94,20 @@ def reference_of(run: Run) -> tuple[str, Trajectory] | None:
     return None
 
 
-def counted_reference_yaw(run: Run, reference: Trajectory) -> FloatArray:
-    """Yaw (N,) of the reference with whole turns counted by the run; NaN where not measured."""
-    yaw = reference.poses[:, 2]
-    measured = np.isfinite(yaw)
-    continuous = np.full(len(yaw), np.nan)
-    if measured.any():
-        turns = counted_turns(run, reference.stamps_s[measured], yaw[measured])
-        continuous[measured] = turns.yaw_rad
-    return continuous
-
-
 def window_errors(
     run: Run, trajectory: Trajectory, reference: Trajectory, config: EvaluationConfig
 ) -> RelativeErrors:
     """Relative errors of a trajectory of a run, the reference's turns counted by the run."""
     travel_s, travel_m = run.odometry.stamps_s, run.wheel_travel_m
-    continuous = counted_reference_yaw(run, reference)
+    counted = counted_reference_yaw(run, reference)
     return relative_errors(
-        trajectory, reference, travel_s, travel_m, config, reference_yaw_rad=continuous
+        trajectory,
+        reference,
+        travel_s,
+        travel_m,
+        config,
+        reference_yaw_rad=counted.yaw_rad,
+        reference_part=counted.part,
     )
 
 

@@ -14,9 +14,8 @@ from odometry.evaluation.relative import (
     EvaluationConfig,
     RelativeErrors,
     position_errors,
-    relative_errors,
 )
-from odometry.evaluation.score import Score, Withheld, counted_reference_yaw, summary
+from odometry.evaluation.score import Score, Withheld, summary, window_errors
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.trajectory import Trajectory
@@ -81,12 +80,8 @@ class EvaluatedTrajectory:
 
     @cached_property
     def _errors(self) -> tuple[tuple[FloatArray, FloatArray], RelativeErrors]:
-        counted = counted_reference_yaw(self.run, self.reference)
-        travel_s, travel_m = self.run.odometry.stamps_s, self.run.wheel_travel_m
         line = self.trajectory
-        windows = relative_errors(
-            line, self.reference, travel_s, travel_m, self.config, reference_yaw_rad=counted
-        )
+        windows = window_errors(self.run, line, self.reference, self.config)
         return position_errors(line, self.reference), windows
 
 

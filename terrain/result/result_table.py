@@ -10,7 +10,8 @@ from odometry.arrays import FloatArray
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.open_loop_errors import SOURCES
-from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, counted_reference_yaw
+from odometry.evaluation.reference_yaw import counted_reference_yaw
+from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S
 from odometry.fixes.origin import stated_origin
 from odometry.run import UNKNOWN
 from terrain.result.evaluated import is_used_by_filter
@@ -188,7 +189,7 @@ def reference_columns(result: RunResult) -> dict[str, Any]:
         return {}
     travel_m = np.interp(reference.stamps_s, run.odometry.stamps_s, run.wheel_travel_m)
     x, y, _ = reference.poses.T
-    yaw = counted_reference_yaw(run, reference)
+    yaw = counted_reference_yaw(run, reference).yaw_rad
     return {"t": reference.stamps_s, "x": x, "y": y, "yaw": yaw, "wheel_travel": travel_m}
 
 

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from odometry.errors import RunFolderError
 from odometry.run import Run
+from odometry.sensors import YawRate, gyroscope_of
 
 ROBOT = "[robot]\ntrack_width = 0.4\n"
 ODOMETRY = "t,v_left,v_right,gyro_z\n0,0.5,0.5,0.1\n0.1,0.4,0.6,\n0.2,0.4,0.6,0.3\n"
@@ -86,3 +87,13 @@ def test_one_axis_of_a_tilted_sensor_determines_nothing(make_run):
     assert run.yaw_rate.yaw_rate_rad_s.tolist() == [0.1, 0.3]
     turned = f"{ROBOT}[sensors]\nimu = [0, 0, 2]\n"
     assert Run.read(make_run(turned, imu=imu)).yaw_rate.yaw_rate_rad_s.tolist() == [-0.1, -0.2]
+
+
+@pytest.mark.parametrize(("period_s", "seed"), [(0.5, 0), (1.0, 1), (2.0, 2)])
+def test_a_slow_log_is_not_silent_from_row_to_row(period_s, seed):
+    jitter_s = np.random.default_rng(seed).normal(0, 0.01, 100)
+    stamps_s = np.sort(period_s * np.arange(100) + jitter_s)
+    lost = np.delete(stamps_s, [50, 51])
+    gyroscope = gyroscope_of(YawRate(lost, np.full(98, 0.2), "imu.csv"))
+    _, _, _, silent_s = gyroscope.between(stamps_s[:-1], stamps_s[1:])
+    assert np.flatnonzero(silent_s).tolist() == [49, 50, 51]
