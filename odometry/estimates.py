@@ -16,6 +16,8 @@ from odometry.estimation.transition import GYRO_BIAS, STATES
 from odometry.models.icr import icr_twist
 from odometry.trajectory import Trajectory
 
+MOST = 0.9  # of the time: where less was measured, a path by it would be that of the treads
+
 
 @dataclass(frozen=True)
 class Replay:
@@ -139,6 +141,12 @@ class Replay:
         return bool(np.isfinite(self.yaw_rates_rad_s).any())
 
     @property
+    def gyroscope_share(self) -> float:
+        """Share of the time in which a gyroscope measured a yaw rate."""
+        lasts_s = np.diff(self.stamps_s)
+        return float(np.sum(lasts_s[np.isfinite(self.yaw_rates_rad_s)]) / np.sum(lasts_s))
+
+    @property
     def used_gyroscope(self) -> bool:
         """Whether a gyroscope turned the robot anywhere: settings may turn it off in the filter."""
         return bool(np.isfinite(self.numbers("believed_yaw_rate_rad_s")).any())
@@ -146,8 +154,8 @@ class Replay:
     def open_loop(self, track_width: float) -> dict[str, Trajectory]:
         """All trajectories that no pose corrects, the simplest first.
 
-        `differential_drive` and `odometer`; where there is a gyroscope, also `gyroscope`, and
-        where the filter used it, `odometer_without_gyroscope`.
+        `differential_drive` and `odometer`; where a gyroscope measured for MOST of the time, also
+        `gyroscope`, and where the filter used one, `odometer_without_gyroscope`.
         """
         return {name: reckon() for name, reckon in self.open_loop_by_name(track_width).items()}
 
@@ -155,7 +163,7 @@ class Replay:
         """What computes each of them: all of a long run's do not fit in memory."""
         found: dict[str, Callable[[], Trajectory]]
         found = {"differential_drive": partial(self.differential_drive, track_width)}
-        if self.has_gyroscope:
+        if self.has_gyroscope and self.gyroscope_share >= MOST:
             found["gyroscope"] = partial(self.gyroscope, track_width)
         if self.used_gyroscope:
             found["odometer_without_gyroscope"] = self.odometer_without_gyroscope

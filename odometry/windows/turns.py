@@ -140,8 +140,9 @@ UNLIKE = 0.3  # of all turns measured: what one of these scales may leave
 SCALE_OFF = 0.03  # by a rad turned: what is left open of its scale
 DRIFT_RAD_S = 0.005  # of its bias over a run
 SIGMAS = 3.0  # of what scatters
-UNKNOWN_SCALE, UNKNOWN_BIAS_RAD_S = 0.1, 0.1  # off by, where close pairs determine neither; then
-AGREES_FROM_RAD, LEAST_AGREEING, AGREEING = 1.0, 10, 0.8  # most turns must agree but for counts
+LARGEST_BIAS_RAD_S = 0.1  # more would be a fault: such a one may turn by a whole turn unnoticed
+# Where close pairs determine neither, most turns of so many must agree but for counts.
+AGREES_FROM_RAD, LEAST_AGREEING, AGREEING = 0.6, 10, 0.8
 
 
 @dataclass(frozen=True)
@@ -166,16 +167,17 @@ def turns_by_gyroscope(
     turn, gross, off, silent_s = gyroscope.between(stamps_s[:-1], stamps_s[1:])
     known = _calibrated(gyroscope, pairs)
     if known is None:
-        turned = (silent_s == 0) & (gross > AGREES_FROM_RAD)
-        agrees = np.abs(wrap(turn - np.diff(yaw_rad)))[turned] < np.pi / 4
-        if len(agrees) < LEAST_AGREEING or agrees.mean() < AGREEING:
+        here = (silent_s == 0) & (gross > AGREES_FROM_RAD)
+        off_rad = wrap(np.diff(yaw_rad) - turn)[here]
+        if len(off_rad) < LEAST_AGREEING or np.mean(np.abs(off_rad) < np.pi / 4) < AGREEING:
             return None
-        known = _Calibration(0.0, UNKNOWN_BIAS_RAD_S, 1.0, UNKNOWN_SCALE, POSE_RAD, 0.0)
+        known = _calibration(turn[here], turn[here] + off_rad, np.diff(stamps_s)[here])
     if known.unlike > UNLIKE or not SCALES[0] < known.scale < SCALES[1]:
         return None
     lasts_s = np.diff(stamps_s)
     bound = known.pose_rad + off + known.scale_off * gross + known.bias_off_rad_s * lasts_s
-    return turn - known.bias_rad_s * lasts_s, np.where(silent_s > 0, np.inf, bound)
+    unknown = (silent_s > 0) | (lasts_s * LARGEST_BIAS_RAD_S > np.pi)
+    return turn - known.bias_rad_s * lasts_s, np.where(unknown, np.inf, bound)
 
 
 def _calibrated(gyroscope: Gyroscope, pairs: ClosePairs) -> _Calibration | None:
@@ -184,7 +186,11 @@ def _calibrated(gyroscope: Gyroscope, pairs: ClosePairs) -> _Calibration | None:
     known = pairs.where(silent_s == 0)
     if not known.tell_a_scale:
         return None
-    turn, turned, lasts_s = turn[silent_s == 0], known.turned_rad, known.end_s - known.begin_s
+    return _calibration(turn[silent_s == 0], known.turned_rad, known.end_s - known.begin_s)
+
+
+def _calibration(turn: FloatArray, turned: FloatArray, lasts_s: FloatArray) -> _Calibration:
+    """Of turns (K,) by the gyroscope and by yaws over times (K,)."""
     bias = slope(turn - turned, lasts_s)
     scale = slope(turned, turn - bias * lasts_s)
     errors = turn - bias * lasts_s - turned

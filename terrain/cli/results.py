@@ -41,14 +41,13 @@ def print_errors(results: Mapping[str, "RunResult"]) -> None:
 
 def _beside_errors(result: "RunResult") -> list[str]:
     """What the table does not hold: how the estimate is evaluated, and what else to note."""
-    from terrain.result.evaluation_notes import NO_GYROSCOPE, advice, evaluated_with
+    from terrain.result.evaluation_notes import advice, evaluated_with, without_gyroscope_row
 
     second = result.second
     how = [] if second is None else [f"The estimate is evaluated with {evaluated_with(second)}"]
-    missing = [] if result.replay.has_gyroscope else [NO_GYROSCOPE]
     return [
         *how,
-        *missing,
+        *without_gyroscope_row(result.replay),
         *result.remarks,
         advice(result.uncertainty, result.reference_name),
     ]

@@ -14,7 +14,7 @@ from terrain.report.lines import (
     other_odometer,
 )
 from terrain.report.tables import number
-from terrain.result.evaluation_notes import NO_GYROSCOPE, evaluated_with
+from terrain.result.evaluation_notes import evaluated_with, without_gyroscope_row
 from terrain.result.run_result import RunResult
 from terrain.result.switch_delay import true_stretches
 
@@ -113,8 +113,9 @@ def notes(lines: ReportLines) -> list[str]:
 
 
 def _gyroscope_notes(result: RunResult) -> list[str]:
-    if not result.replay.has_gyroscope:
-        return [NO_GYROSCOPE]
+    missing = without_gyroscope_row(result.replay)
+    if missing:
+        return missing
     plain = (
         "The gyroscope row drives the mean of both tread speeds along the heading of the "
         "gyroscope as recorded: nothing is fitted."

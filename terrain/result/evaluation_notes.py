@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from odometry.estimates import Replay
+from odometry.estimates import MOST, Replay
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW, REINITIALISED
 from odometry.estimation.transition import GYRO_BIAS
@@ -24,9 +24,21 @@ NEEDS_NO_FIT = {
 JUDGED_AT_THE_END = {"odometer": "the odometer", "estimate": "the estimate"}
 
 
-NO_GYROSCOPE = (
-    "The run has no gyroscope: there is no gyroscope row, and the odometer is turned by the treads."
-)
+def without_gyroscope_row(replay: Replay) -> list[str]:
+    """Why the errors have no gyroscope row; empty where they have one."""
+    share = replay.gyroscope_share
+    if share >= MOST:
+        return []
+    if not share:
+        return [
+            "The run has no gyroscope: there is no gyroscope row, and the odometer is turned by "
+            "the treads."
+        ]
+    return [
+        f"The gyroscope measured for {100 * share:.0f} % of the time: there is no gyroscope row, "
+        "and elsewhere the odometer is turned by the treads."
+    ]
+
 
 HARMLESS = {  # kinds of events after which the estimate is still valid
     DRIFT_FOLLOWED,

@@ -199,3 +199,17 @@ def test_frames_within_gaps_and_at_their_ends_are_marked(make_run):
     replay(run, ekf, ConstantTerrain("a"))
     assert ekf.in_gaps_s == [5.0, 9.0, 17.0]
     assert {3.75, 9.25, 11.75} < set(ekf.stamps_s)
+
+
+@pytest.mark.parametrize(("measured", "has_row"), [(1.0, True), (0.95, True), (0.4, False)])
+def test_a_path_by_the_gyroscope_needs_one_that_measured_most_of_the_time(
+    make_run, measured, has_row
+):
+    stamps_s = np.arange(0.0, 20.0, 0.1)
+    rows = "".join(f"{t:.1f},0.5,0.6\n" for t in stamps_s)
+    rates = "".join(f"{t:.1f},0.1\n" for t in stamps_s[: round(measured * len(stamps_s))])
+    folder = make_run(odometry="t,v_left,v_right\n" + rows)
+    (folder / "imu.csv").write_text("t,gyro_z\n" + rates)
+    result = replayed(Run.read(folder))
+    assert result.gyroscope_share == pytest.approx(measured, abs=0.03)
+    assert ("gyroscope" in result.open_loop(0.6)) == has_row

@@ -134,3 +134,16 @@ def test_windows_measure_the_true_turn(bias_rad_s):
     assert wrong == 0
     assert windows_count > 100
     assert left_out < 0.1 * windows_count
+
+
+@pytest.mark.parametrize("bias_rad_s", [0.0, 0.02, -0.03])
+def test_rare_poses_are_counted_by_a_gyroscope_that_agrees_with_them(bias_rad_s):
+    """8 s between poses: too long for a bias that is not known, but they agree with it."""
+    run, true_yaw = turning_run(5, 0.5, 0.0, bias_rad_s=bias_rad_s)
+    rare = slice(None, None, 4)
+    columns = {name: values[rare] for name, values in run.pose.columns.items()}
+    few = replace(run, pose=replace(run.pose, columns=columns))
+    wrong, unknown, nearest, pairs = counted(few, true_yaw[rare])
+    assert wrong == 0
+    assert nearest > 0.3 * pairs
+    assert unknown < 0.2 * pairs

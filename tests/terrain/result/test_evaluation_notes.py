@@ -1,12 +1,19 @@
 """Sentences about where the simple does as well or better, from scores made by hand."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.score import Score
 from terrain.result.evaluated import scatter_of_reference
-from terrain.result.evaluation_notes import remarks, simple_is_better, worse_at_the_end
+from terrain.result.evaluation_notes import (
+    remarks,
+    simple_is_better,
+    without_gyroscope_row,
+    worse_at_the_end,
+)
 
 
 def scores(**errors):
@@ -79,3 +86,12 @@ def test_what_of_the_errors_is_the_scatter_of_the_poses_is_said(rng):
     assert "off by about 0.29 m" in sentence
     assert scatter_of_reference((scatter,), "truth", 5.0) == []
     assert scatter_of_reference((), "pose", 5.0) == []
+
+
+@pytest.mark.parametrize(
+    ("share", "words"), [(0.0, "no gyroscope"), (0.324, "measured for 32 % of the time")]
+)
+def test_why_there_is_no_gyroscope_row_is_said(share, words):
+    (note,) = without_gyroscope_row(SimpleNamespace(gyroscope_share=share))
+    assert words in note
+    assert without_gyroscope_row(SimpleNamespace(gyroscope_share=0.93)) == []
