@@ -9,6 +9,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.evidence.scatter import scattered
+from odometry.checks.statistics.in_motion import moving_samples
 from odometry.checks.statistics.measured_between import gaps_between
 from odometry.checks.statistics.outliers import excursions, pose_outliers, without_spikes
 from odometry.run import Run
@@ -62,8 +63,9 @@ class CleanedRecording:
 
     @cached_property
     def fastest_m_s(self) -> float:
-        """Ordinary fastest tread speed: 99 in 100 are slower."""
-        return float(np.quantile(np.abs(self.speeds_m_s).max(axis=1), 0.99))
+        """Ordinary fastest tread speed: 99 in 100 of those in motion are slower."""
+        fastest_m_s = np.abs(self.speeds_m_s).max(axis=1)
+        return float(np.quantile(fastest_m_s[moving_samples(fastest_m_s)], 0.99))
 
     @cached_property
     def yaw_rate(self) -> tuple[FloatArray, FloatArray] | None:

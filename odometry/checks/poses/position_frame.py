@@ -14,11 +14,13 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_rad
 from odometry.checks.evidence.once import once
+from odometry.checks.statistics.in_motion import moving_windows
 
 LEAST_WINDOWS = 40
 BLOCKS = 8  # of the recording; each is left out once (jackknife), as slip and noise last a while
 ROUNDS, CUTOFF = 6, 4.0  # of leaving out windows, beyond so many medians
 MOST_TURN_RAD = 1.0  # within a window that has a direction
+ON, SWUNG = 0, 2  # columns of s and of p
 LEAST_ANGLE = 1e-4  # squared sine between columns, below which they are one
 
 
@@ -50,7 +52,9 @@ def position_frame(evidence: Evidence) -> PositionFrame | None:
     known = np.isfinite(moved_m) & np.isfinite(columns).all(axis=1)
     if known.sum() < LEAST_WINDOWS:
         return None
-    fits = _fits(moved_m[known], columns[known])
+    moved_m, columns = moved_m[known], columns[known]
+    moves = moving_windows(np.abs(columns[:, [ON, SWUNG]]).T)  # blocks are of the way it drives
+    fits = _fits(moved_m[moves], columns[moves])
     if fits is None:
         return None
     forwards, stretch = fits[:, 0] + 1j * fits[:, 1], fits[:, 6] + 1j * fits[:, 7]

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.checks.statistics.in_motion import moving_samples
 from odometry.windows.spans import runs_of
 
 NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)
@@ -31,9 +32,11 @@ def spikes(values: FloatArray) -> BoolArray:
     if far.any():
         rows = np.arange(len(values))
         return np.asarray(far | spikes(np.interp(rows, rows[~far], values[~far])))
-    ordinary = min(0.99, 1 - 2 * LONGEST / len(values))  # one spike is not to be ordinary
-    usual_step = np.quantile(np.abs(np.diff(values)), ordinary)
-    fastest = np.quantile(np.abs(values), ordinary)
+    sizes, steps = np.abs(values), np.abs(np.diff(values))
+    moves = moving_samples(sizes)
+    ordinary = min(0.99, 1 - 2 * LONGEST / max(int(moves.sum()), 10))  # one spike is not ordinary
+    fastest = np.quantile(sizes[moves], ordinary)
+    usual_step = np.quantile(steps[moves[1:] | moves[:-1]], ordinary)
     least = max(NEIGHBOURS * float(usual_step), OF_FASTEST * float(fastest), 1e-9)
     found = np.zeros(len(values), dtype=np.bool_)
     lowest = highest = values[1:-1]  # of so many samples from each on
@@ -98,8 +101,10 @@ def pose_outliers(positions: FloatArray) -> BoolArray:
     )
     around = np.lib.stride_tricks.sliding_window_view(padded, 2 * REACH + 1, axis=0)
     away = np.hypot(*(positions - np.median(around, axis=-1)).T)
-    step = float(np.quantile(np.hypot(*np.diff(positions, axis=0).T), 0.9))
-    usual = 1.4826 * float(np.median(away))
+    steps = np.hypot(*np.diff(positions, axis=0).T)
+    moves = moving_samples(steps)
+    step = float(np.quantile(steps[moves], 0.9))
+    usual = 1.4826 * float(np.median(away[1:][moves]))
     far = away > max(TIMES * usual, 3 * step, LEAST_M * _unit(step))
     edges = np.diff(np.concatenate([[False], far, [False]]).astype(np.int8))
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
@@ -120,7 +125,7 @@ def excursions(stamps_s: FloatArray, positions: FloatArray) -> BoolArray:
         return found
     steps = np.diff(positions, axis=0)
     sizes = np.hypot(*steps.T)
-    ordinary = float(np.quantile(sizes, 0.9))
+    ordinary = float(np.quantile(sizes[moving_samples(sizes)], 0.9))
     far = np.flatnonzero(sizes > max(TIMES * ordinary, LEAST_STEP_M * _unit(ordinary)))
     for out, back in itertools.pairwise(far.tolist()):
         left = float(np.hypot(*(steps[out] + steps[back])))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, median
+from odometry.checks.statistics.in_motion import moving_windows
 from odometry.checks.statistics.least_squares import Columns, least_squares, of_products
 
 ROUNDS = 8
@@ -69,6 +70,8 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
 
     Outliers are left out by their distance from the fit in units of 1.4826 times the median of
     absolute residuals (least trimmed squares by repeated weighting, Rousseeuw and Leroy 1987).
+    That median, the deviations and the correlation are those of windows in which a column says
+    something: however long the robot stands beside them.
     """
     rows = np.array(columns)
     measured = np.isfinite(target) & np.isfinite(rows).all(axis=0)
@@ -76,9 +79,10 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
     if len(of_known) < LEAST_WINDOWS or not (fitted := Columns(known)).independent:
         return None
     coefficients, kept = _least_absolute(fitted, of_known), np.ones(len(of_known), dtype=np.bool_)
+    moves = moving_windows(known)
     for done in range(ROUNDS):
         sizes = np.abs(of_known - coefficients @ known)
-        now = sizes <= CUTOFF * 1.4826 * median(sizes) + 1e-12
+        now = sizes <= CUTOFF * 1.4826 * median(sizes[moves]) + 1e-12
         changed = bool((now != kept).any())
         if changed and now.sum() >= LEAST_WINDOWS and (few := Columns(known[:, now])).independent:
             fitted, kept = few, now
@@ -86,13 +90,14 @@ def relation(target: FloatArray, *columns: FloatArray) -> Relation | None:
             break
         coefficients = fitted.coefficients(of_known[kept])
     left, of_fitted = of_known - coefficients @ known, of_known[kept]
-    variance = np.sum(left[kept] ** 2) / max(len(of_fitted) - len(columns), 1)
+    driven = kept & moves
+    variance = np.sum(left[driven] ** 2) / max(int(driven.sum()) - len(columns), 1)
     all_kept = measured.copy()
     all_kept[measured] = kept
     return Relation(
         coefficients,
         np.sqrt(np.maximum(variance * fitted.variances(), 0.0)),
-        _correlation(of_fitted, coefficients @ fitted.values),
+        _correlation(of_known[driven], coefficients @ known[:, driven]),
         all_kept,
         len(of_known),
         target - coefficients @ rows,

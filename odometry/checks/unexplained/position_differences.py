@@ -9,6 +9,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
 from odometry.checks.poses.steps import reckoned, without_window_changes
+from odometry.checks.statistics.in_motion import moving_samples
 
 SPAN_S = 10.0
 LEAST_M = 1.5  # besides the share of the travel
@@ -30,10 +31,15 @@ class PositionSpans:
     moved_m: FloatArray
 
     @property
+    def drives(self) -> BoolArray:
+        """Spans (K,) in which the robot drives."""
+        far_m = float(np.quantile(self.driven_m[moving_samples(self.driven_m)], 0.9))
+        return np.asarray(self.driven_m > 0.2 * far_m)
+
+    @property
     def much(self) -> BoolArray:
         """Spans (K,) in which they part by far more than slip leaves."""
-        drives = self.driven_m > 0.2 * float(np.quantile(self.driven_m, 0.9))
-        return np.asarray(drives & (self.apart_m - LEAST_M > HALF * self.driven_m))
+        return np.asarray(self.drives & (self.apart_m - LEAST_M > HALF * self.driven_m))
 
 
 def positions_apart_everywhere(evidence: Evidence) -> str:
@@ -52,7 +58,8 @@ def positions_apart(evidence: Evidence) -> str:
     spans = _spans(evidence)
     if spans is None:
         return ""
-    usual_m = float(np.median(spans.apart_m))
+    drives = spans.drives
+    usual_m = float(np.median(spans.apart_m[drives if drives.any() else slice(None)]))
     alone = spans.apart_m > LEAST_M + OF_TRAVEL * spans.driven_m
     alone &= spans.apart_m > TIMES * usual_m
     odd = (alone | spans.much) & (spans.moved_m > STOOD * spans.driven_m)
