@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
+from terrain.classification.neighbours.metric import equal_shares
 from terrain.classification.neighbours.validation import Samples
 
 LEAST_SPREAD = 1e-9  # of a feature: one that does not vary stays finite
@@ -67,15 +68,19 @@ class SamplesBesideOld(Samples):
 
     def with_copies(
         self, rows: IntArray, copies: Samples | None
-    ) -> tuple[FloatArray, IntArray, int]:
-        """As for `Samples`, the old ones last; they count as copies, which are not familiar."""
-        features, codes, count = super().with_copies(rows, copies)
+    ) -> tuple[FloatArray, IntArray, int, FloatArray]:
+        """As for `Samples`, the old ones last; they count as copies, which are not familiar.
+
+        Every sample of a terrain has the same share: photographs of old ones are not known.
+        """
+        features, codes, count, _ = super().with_copies(rows, copies)
         known = np.isin(self.old_codes, self.codes[rows])
         there, deviation = _balanced(self.features[rows], self.codes[rows])
         here, spread = _balanced(self.old[known], self.old_codes[known])
         moved = there + (self.old - here) / np.maximum(spread, LEAST_SPREAD) * deviation
         every = np.concatenate([codes, self.old_codes])
-        return np.concatenate([features, moved]), every, count + len(moved)
+        shares = equal_shares(every, np.arange(len(every)))
+        return np.concatenate([features, moved]), every, count + len(moved), shares
 
 
 def _balanced(features: FloatArray, codes: IntArray) -> tuple[FloatArray, FloatArray]:

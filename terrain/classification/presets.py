@@ -14,7 +14,6 @@ from terrain.classification.neighbours.nearest import brute_force, labels_and_sa
 from terrain.classification.neighbours.neighbours import (
     DiscriminantNeighbours,
     Neighbours,
-    linear_neighbours,
 )
 
 
@@ -23,8 +22,14 @@ class PlainNeighbours:
 
     class_weights_: FloatArray
 
-    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:  # noqa: ARG002
-        """Remember features (n, F) and class codes (n,), copies or not."""
+    def fit(
+        self,
+        features: FloatArray,
+        codes: IntArray,
+        copies: int = 0,  # noqa: ARG002
+        shares: FloatArray | None = None,  # noqa: ARG002
+    ) -> Self:
+        """Remember features (n, F) and class codes (n,), copies or not, each with one vote."""
         self.pipeline_ = make_pipeline(brute_force()).fit(features, codes)
         self.class_weights_ = np.ones(int(codes.max()) + 1)
         return self
@@ -57,6 +62,11 @@ class PlainNeighbours:
     def from_arrays(cls, arrays: Mapping[str, AnyArray]) -> Self:
         """Rebuild from the training samples."""
         return cls().fit(arrays["points"], arrays["codes"])
+
+
+def linear_neighbours() -> DiscriminantNeighbours:
+    """Neighbours among linear discriminants."""
+    return DiscriminantNeighbours(cosines=0)
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ from sklearn.metrics import balanced_accuracy_score
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from terrain.classification.features.copies import GREY_COPIES
 from terrain.classification.features.features import FEWER_GREYS, FeatureSettings, feature_matrix
-from terrain.classification.neighbours.neighbours import linear_neighbours, vote
+from terrain.classification.neighbours.neighbours import vote
 from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.photographs.patches import find_photos, load_patches
-from terrain.classification.presets import PRESETS
+from terrain.classification.presets import PRESETS, linear_neighbours
 
 ALL = tuple(GREY_COPIES)
 DEAR = ("coherence_1.4", "coherence_2.8", "magnitude_2.8", "orientation_2.8", "contrast_16")

@@ -18,8 +18,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from terrain.classification.held_out import rejection_roc_area
-from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, linear_neighbours
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours
 from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.presets import linear_neighbours
 from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 from tests.studies.terrain_unknown import FOLDS as FEWER_FOLDS
 from tests.studies.terrain_unknown import REJECTED, parts, thinned

@@ -9,7 +9,7 @@ from sklearn.covariance import ledoit_wolf, shrunk_covariance
 from sklearn.decomposition import PCA
 from sklearn.preprocessing import StandardScaler
 
-from odometry.arrays import AnyArray, FloatArray
+from odometry.arrays import AnyArray, FloatArray, IntArray
 
 CLIP = 3.0
 SMALLEST_SHRINKAGE = 0.01
@@ -38,7 +38,8 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     together, is shrunk towards a multiple of the identity by Ledoit and Wolf's share, at least
     1 %: it stays defined with fewer samples than features. With S that covariance and B the
     weighted class means, discriminants w solve B B^T w = v S w; they are S^-1 B u, where u are the
-    eigenvectors of the small matrix B^T S^-1 B. Each has unit length within classes.
+    eigenvectors of the small matrix B^T S^-1 B. Each has unit length within classes. Samples count
+    for their `shares`, all the same where none are given.
 
     Attributes
     ----------
@@ -49,21 +50,23 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     Ledoit and Wolf 2004, "A well-conditioned estimator for large-dimensional covariance matrices".
     """
 
-    def fit(self, X: FloatArray, y: AnyArray) -> Self:
-        """Fit the projection to features `X` (n, F) and labels `y` (n,).
+    def fit(self, X: FloatArray, y: AnyArray, shares: FloatArray | None = None) -> Self:
+        """Fit to features `X` (n, F), labels `y` (n,) and `shares` (n,) that add up to 1.
 
         Raises
         ------
         LinAlgError
             If the samples within each class are all equal.
         """
-        classes, codes, counts = np.unique(y, return_inverse=True, return_counts=True)
-        means = np.array([X[codes == c].mean(axis=0) for c in range(len(classes))])
-        within = X - means[codes]
+        classes, codes = np.unique(y, return_inverse=True)
+        weights = np.full(len(X), 1 / len(X)) if shares is None else shares
+        sums = np.bincount(codes, weights)
+        rows = [codes == c for c in range(len(classes))]
+        means = np.array([weights[of] @ X[of] for of in rows]) / sums[:, None]
+        within = np.sqrt(len(X) * weights)[:, None] * (X - means[codes])
         _, share = ledoit_wolf(within, assume_centered=True)
         covariance = shrunk_covariance(within.T @ within / len(X), max(share, SMALLEST_SHRINKAGE))
-        shares = counts / len(X)
-        between = (means - shares @ means).T * np.sqrt(shares)  # times its transpose: covariance
+        between = (means - sums @ means).T * np.sqrt(sums)  # times its transpose: covariance
         sharpened = cho_solve(cho_factor(covariance), between)
         values, vectors = np.linalg.eigh(between.T @ sharpened)  # as many as classes, ascending
         kept = slice(-1, -len(classes), -1)
@@ -74,6 +77,18 @@ class DiscriminantMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]
     def transform(self, X: FloatArray) -> FloatArray:
         """Map features (n, F) to discriminants (n, classes - 1)."""
         return np.asarray(X @ self.projection_)
+
+
+def equal_shares(codes: IntArray, groups: AnyArray) -> FloatArray:
+    """What samples (n,) count for: every class the same, and every group of a class.
+
+    Patches of one photograph have much in common: of many of them most say the same once more.
+    """
+    _, of_group = np.unique(groups, return_inverse=True)
+    parts, part = np.unique(np.column_stack([codes, of_group]), axis=0, return_inverse=True)
+    in_class = np.bincount(parts[:, 0])
+    shares = 1 / (np.bincount(part.ravel())[part.ravel()] * in_class[codes])
+    return np.asarray(shares / shares.sum())
 
 
 class AppearanceMetric(TransformerMixin, BaseEstimator):  # type: ignore[misc]

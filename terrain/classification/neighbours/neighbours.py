@@ -27,6 +27,7 @@ from terrain.classification.neighbours.nearest import (
     labels_and_sample_distances,
 )
 
+Shares = FloatArray | None
 SMALLEST = np.finfo(float).tiny  # sparsity of a patch that several samples equal
 
 
@@ -35,8 +36,10 @@ class Neighbours(Protocol):
 
     class_weights_: FloatArray
 
-    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
-        """Learn from training features (n, F) and class codes (n,); the last are altered copies."""
+    def fit(
+        self, features: FloatArray, codes: IntArray, copies: int = 0, shares: Shares = None
+    ) -> Self:
+        """Learn from features (n, F), class codes and shares (n,); the last are altered copies."""
 
     def labels(self, features: FloatArray, k: int) -> IntArray:
         """Return the class codes of the k nearest training samples, nearest first, (n, k)."""
@@ -111,12 +114,14 @@ class DiscriminantNeighbours:
     def __init__(self, cosines: int = MOST) -> None:
         self._cosines = cosines
 
-    def fit(self, features: FloatArray, codes: IntArray, copies: int = 0) -> Self:
+    def fit(
+        self, features: FloatArray, codes: IntArray, copies: int = 0, shares: Shares = None
+    ) -> Self:
         """Learn scale, discriminants, components and spacings from (n, F) and (n,)."""
         self.pipeline_ = make_pipeline(
             ClippedScaler(), FourierFeatures(self._cosines), DiscriminantMetric(), brute_force()
         )
-        self.pipeline_.fit(features, codes)
+        self.pipeline_.fit(features, codes, discriminantmetric__shares=shares)
         self.class_weights_ = 1.0 / np.bincount(codes)
         seen = len(features) - copies
         places = self.samples()[0][:seen]
@@ -243,8 +248,3 @@ class DiscriminantNeighbours:
             arrays["appearance_points"], arrays["appearance_spacings"]
         )
         return model
-
-
-def linear_neighbours() -> DiscriminantNeighbours:
-    """Neighbours among linear discriminants."""
-    return DiscriminantNeighbours(cosines=0)

@@ -9,6 +9,7 @@ from sklearn.model_selection import StratifiedGroupKFold
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from terrain.classification.neighbours.calibration import fitted_temperature, tempered
+from terrain.classification.neighbours.metric import equal_shares
 from terrain.classification.neighbours.neighbours import Neighbours, vote
 from terrain.classification.neighbours.rejection import PATCHES, images_of_patches
 from terrain.errors import PatchError
@@ -58,14 +59,19 @@ class Samples:
 
     def with_copies(
         self, rows: IntArray, copies: "Samples | None"
-    ) -> tuple[FloatArray, IntArray, int]:
-        """Features and codes of some rows, then of the copies of their groups, and how many."""
+    ) -> tuple[FloatArray, IntArray, int, FloatArray]:
+        """Features and codes of some rows, then of the copies of their groups, and how many.
+
+        Last what each counts for, see `equal_shares`.
+        """
+        features, codes, groups = self.features[rows], self.codes[rows], self.groups[rows]
         if copies is None:
-            return self.features[rows], self.codes[rows], 0
-        follow = np.isin(copies.groups, self.groups[rows])
-        features = np.concatenate([self.features[rows], copies.features[follow]])
-        codes = np.concatenate([self.codes[rows], copies.codes[follow]])
-        return features, codes, int(follow.sum())
+            return features, codes, 0, equal_shares(codes, groups)
+        follow = np.isin(copies.groups, groups)
+        features = np.concatenate([features, copies.features[follow]])
+        codes = np.concatenate([codes, copies.codes[follow]])
+        groups = np.concatenate([groups, copies.groups[follow]])
+        return features, codes, int(follow.sum()), equal_shares(codes, groups)
 
 
 class Fold(NamedTuple):

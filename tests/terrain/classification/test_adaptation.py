@@ -28,8 +28,9 @@ def samples(seed, count, shift, scale, groups):
 def test_old_samples_are_moved_to_where_the_new_camera_sees_them():
     new, old = samples(1, 4000, 7.0, 3.0, 8), samples(2, 4000, -2.0, 0.5, 8)
     beside = SamplesBesideOld(new.features, new.codes, new.groups, old.features, old.codes)
-    features, codes, copies = beside.with_copies(np.arange(4000), None)
+    features, codes, copies, shares = beside.with_copies(np.arange(4000), None)
     assert copies == 4000
+    np.testing.assert_allclose(shares, 1 / 8000, atol=1e-12)
     np.testing.assert_array_equal(features[:4000], new.features)
     np.testing.assert_array_equal(codes[4000:], old.codes)
     expected = 7.0 + 3.0 * (old.features + 2.0) / 0.5
@@ -42,7 +43,7 @@ def test_the_share_of_terrains_moves_nothing():
     part = SamplesBesideOld(
         new.features[rare], new.codes[rare], new.groups[rare], old.features, old.codes
     )
-    features, _, count = part.with_copies(np.arange(rare.sum()), None)
+    features, _, count, _ = part.with_copies(np.arange(rare.sum()), None)
     np.testing.assert_allclose(features[-count:], old.features, atol=0.3)
 
 

@@ -6,10 +6,10 @@ import pytest
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.model_file import read_model, write_model
-from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, linear_neighbours
+from terrain.classification.neighbours.neighbours import DiscriminantNeighbours
 from terrain.classification.neighbours.rejection import PATCHES, images_of_patches, quantiles
 from terrain.classification.neighbours.validation import Samples, cross_validate
-from terrain.classification.presets import PlainNeighbours
+from terrain.classification.presets import PlainNeighbours, linear_neighbours
 from terrain.errors import ModelFileError
 
 CLASSES, FEATURES, EACH = 3, 8, 8

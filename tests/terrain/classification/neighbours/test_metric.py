@@ -7,6 +7,7 @@ from terrain.classification.neighbours.metric import (
     AppearanceMetric,
     ClippedScaler,
     DiscriminantMetric,
+    equal_shares,
 )
 
 
@@ -54,6 +55,28 @@ def test_discriminants_solve_the_generalised_problem_of_eigenvalues(classes, rng
     expected = vectors[:, :-classes:-1]
     signs = np.sign(np.sum(projection * expected, axis=0))
     np.testing.assert_allclose(projection, signs * expected, atol=1e-12)
+
+
+def test_shares_are_as_samples_that_are_there_so_many_times(rng):
+    codes, times = rng.integers(0, 3, 4000), rng.integers(1, 5, 4000)
+    features = rng.normal(size=(3, 4))[codes] + rng.normal(size=(4000, 4)) * [1, 2, 3, 4]
+    given = DiscriminantMetric().fit(features, codes, times / times.sum()).projection_
+    rows = np.repeat(np.arange(4000), times)
+    repeated = DiscriminantMetric().fit(features[rows], codes[rows]).projection_
+    signs = np.sign(np.sum(given * repeated, axis=0))
+    np.testing.assert_allclose(given, signs * repeated, atol=1e-9)
+
+
+def test_a_photograph_of_many_patches_does_not_decide_what_varies(rng):
+    """One photograph of each class varies along the first axis, all others along the second."""
+    groups = np.repeat(np.arange(22), [200, *[2] * 10, 200, *[2] * 10])
+    codes = (groups > 10).astype(int)
+    spread = np.where(np.isin(groups, [0, 11])[:, None], [3.0, 0.3], [0.3, 3.0])
+    features = codes[:, None] + spread * rng.normal(size=(len(codes), 2))
+    even = DiscriminantMetric().fit(features, codes, equal_shares(codes, groups)).projection_
+    one_each = DiscriminantMetric().fit(features, codes).projection_
+    assert abs(even[0, 0]) > 2 * abs(even[1, 0])
+    assert abs(one_each[1, 0]) > 2 * abs(one_each[0, 0])
 
 
 def test_classes_of_equal_means_have_no_discriminant_and_no_error(rng):

@@ -3,6 +3,7 @@ import pytest
 from scipy.stats import entropy
 from sklearn.neighbors import KNeighborsClassifier
 
+from terrain.classification.neighbours.metric import DiscriminantMetric
 from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, vote
 from terrain.classification.presets import PlainNeighbours
 
@@ -39,6 +40,15 @@ def test_rare_classes_weigh_as_much_as_common_ones(samples):
     model = DiscriminantNeighbours().fit(*samples)
     everything = vote(model.labels(samples[0], 120), model.class_weights_)
     np.testing.assert_allclose(everything, 1 / 3)
+
+
+def test_classes_are_told_apart_by_what_samples_count_for(samples):
+    shares = np.linspace(1, 5, 120) / np.linspace(1, 5, 120).sum()
+    model = DiscriminantNeighbours(cosines=0).fit(*samples, 0, shares)
+    scaled = model.scaler.transform(samples[0])
+    expected = DiscriminantMetric().fit(scaled, samples[1], shares).projection_
+    np.testing.assert_array_equal(model.arrays()["discriminants"], expected)
+    assert np.abs(expected - DiscriminantMetric().fit(scaled, samples[1]).projection_).max() > 0.01
 
 
 def test_altered_copies_vote_and_make_nothing_familiar(samples, rng):

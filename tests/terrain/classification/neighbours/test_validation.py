@@ -106,8 +106,8 @@ def test_the_better_way_is_chosen_and_of_equals_the_first(rng):
     samples = Samples(*ground(rng))
 
     class Blind(PlainNeighbours):
-        def fit(self, features, codes, copies=0):
-            return super().fit(np.zeros_like(features), codes, copies)
+        def fit(self, features, codes, copies=0, shares=None):
+            return super().fit(np.zeros_like(features), codes, copies, shares)
 
     way, found, _ = best_way((Blind, PlainNeighbours), (1, 3), samples)
     assert way is PlainNeighbours
@@ -115,3 +115,14 @@ def test_the_better_way_is_chosen_and_of_equals_the_first(rng):
     np.testing.assert_array_equal(found.probabilities, again.probabilities)
     first, second = (type("Same", (PlainNeighbours,), {}) for _ in range(2))
     assert best_way((first, second), (1,), samples)[0] is first
+
+
+def test_each_class_and_each_photograph_of_a_class_counts_the_same():
+    codes, groups = np.array([0, 0, 0, 1, 1, 1, 1]), np.array(["a", "a", "b", "c", "c", "c", "a"])
+    copies = Samples(np.zeros((2, 1)), np.array([0, 0]), np.array(["b", "z"]))
+    samples = Samples(np.zeros((7, 1)), codes, groups)
+    *_, shares = samples.with_copies(np.arange(7), copies)
+    expected = [1 / 8, 1 / 8, 1 / 8, 1 / 12, 1 / 12, 1 / 12, 1 / 4, 1 / 8]
+    np.testing.assert_allclose(shares, expected, atol=1e-12)
+    *_, alone = samples.with_copies(np.array([0, 2, 3]), None)
+    np.testing.assert_allclose(alone, [1 / 4, 1 / 4, 1 / 2], atol=1e-12)

@@ -94,10 +94,10 @@ def test_copies_are_learned_from_with_their_photograph_and_never_judged(rng):
     folds = []
 
     class Recorded(PlainNeighbours):
-        def fit(self, features, codes, copies=0):
+        def fit(self, features, codes, copies=0, shares=None):
             folds.append((features[:, 0].astype(int).tolist(), codes.tolist()))
             assert copies == len(codes) // 3
-            return super().fit(features, codes, copies)
+            return super().fit(features, codes, copies, shares)
 
     codes, groups = np.repeat([0, 1], 20), np.arange(40) // 2
     samples = Samples(np.column_stack([groups, rng.normal(size=40)]), codes, groups)
