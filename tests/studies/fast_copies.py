@@ -22,7 +22,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from terrain.classification.features.copies import GREY_COPIES
 from terrain.classification.features.features import FEWER_GREYS, FeatureSettings, feature_matrix
 from terrain.classification.neighbours.neighbours import vote
-from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.neighbours.validation import Samples, grouped_folds
 from terrain.classification.photographs.patches import find_photos, load_patches
 from terrain.classification.presets import PRESETS, linear_neighbours
 
@@ -57,7 +57,8 @@ class Photos:
         columns = np.concatenate(
             [PER_COPY * ALL.index(copy) + np.arange(PER_COPY) for copy in copies]
         )
-        model = linear_neighbours().fit(self.features[np.ix_(train, columns)], self.codes[train])
+        samples = Samples(self.features[:, columns], self.codes, self.groups)
+        model = linear_neighbours().fit(*samples.with_copies(train, None))
         labels = model.labels(self.features[np.ix_(test, columns)], NEIGHBOURS)
         return vote(labels, model.class_weights_)
 

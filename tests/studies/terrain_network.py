@@ -38,7 +38,7 @@ def answers(features: FloatArray, codes: AnyArray, groups: AnyArray) -> FloatArr
     for train, test in grouped_folds(codes, groups):
         inside = Samples(features[train], codes[train], groups[train])
         k = cross_validate(PRESET.neighbours, PRESET.neighbour_counts, inside).n_neighbors
-        model = PRESET.neighbours().fit(inside.features, inside.codes)
+        model = PRESET.neighbours().fit(*inside.with_copies(np.arange(len(train)), None))
         labels, _ = model.labels_and_distances(features[test], k)
         probabilities[test] = vote(labels, model.class_weights_)
     return probabilities

@@ -111,7 +111,7 @@ def own_study(name: str, grounds: Grounds, columns: slice) -> None:
             (inner.codes, inner.probabilities, samples.groups[inner.rows])
         )
         learned.append(round(sharpening, 3))
-        model = way().fit(samples.features, samples.codes)
+        model = way().fit(*samples.with_copies(np.arange(len(train)), None))
         labels = model.labels(features[test], inner.n_neighbors)
         given = tempered(vote(labels, model.class_weights_), inner.temperature)
         votes = grounds.codes[test], given, grounds.groups[test]

@@ -25,7 +25,7 @@ from odometry.arrays import FloatArray
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.neighbours.nearest import NEIGHBOURS, VOTERS, classes_left_open, nearest
 from terrain.classification.neighbours.neighbours import DiscriminantNeighbours, vote
-from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.neighbours.validation import Samples, grouped_folds
 from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 
 PER_PHOTO, FOLDS = 12, 2
@@ -71,8 +71,9 @@ def told(grounds: Grounds, left_out: Iterable[str]) -> dict[str, FloatArray]:
     """Areas and refused shares (candidates, 4) of each class that is left out, mean over folds."""
     known = grounds.only(~np.isin(grounds.labels, list(left_out)))
     found: dict[str, list[FloatArray]] = {label: [] for label in left_out}
+    samples = Samples(known.bank[:, GREY], known.codes, known.groups)
     for train, test in grouped_folds(known.codes, known.groups)[:FOLDS]:
-        model = DiscriminantNeighbours().fit(known.bank[train][:, GREY], known.codes[train])
+        model = DiscriminantNeighbours().fit(*samples.with_copies(train, None))
         held = known.only(test)
         near = parts(model, held.bank[:, GREY])
         for label, rows in found.items():

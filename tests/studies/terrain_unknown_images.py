@@ -19,7 +19,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from terrain.classification.held_out import rejection_roc_area
 from terrain.classification.neighbours.neighbours import DiscriminantNeighbours
-from terrain.classification.neighbours.validation import grouped_folds
+from terrain.classification.neighbours.validation import Samples, grouped_folds
 from terrain.classification.presets import linear_neighbours
 from tests.studies.terrain_grounds import GREY, Grounds, read_grounds
 from tests.studies.terrain_unknown import FOLDS as FEWER_FOLDS
@@ -58,7 +58,8 @@ def judged(grounds: Grounds, name: str, fold: int) -> dict[tuple[int, str], tupl
     """Area and refused share without one class, in one fold."""
     known, unknown = (grounds.only(of) for of in (grounds.labels != name, grounds.labels == name))
     train, test = grouped_folds(known.codes, known.groups)[fold]
-    learned = known.bank[train][:, GREY], known.codes[train]
+    samples = Samples(known.bank[:, GREY], known.codes, known.groups)
+    learned = samples.with_copies(train, None)
     models = linear_neighbours().fit(*learned), DiscriminantNeighbours().fit(*learned)
     near, far = (distances(*models, of) for of in (known.only(test), unknown))
     return {
