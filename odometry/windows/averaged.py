@@ -23,7 +23,7 @@ ROUNDING_S = 1e-6
 def averaged_windows(windows: DenseWindows) -> DenseWindows:
     """The same windows on averaged inputs, `yaw_rate_rad_s` as the gyroscope reports it."""
     samples = np.searchsorted(windows.time_s, windows.pose_s[np.unique(windows.windows)])
-    first = averaging_steps(windows.inputs, samples)
+    first = averaging_steps(windows.inputs, np.union1d(samples, _rare_rows(windows)))
     time_s = windows.time_s[first]
     inputs = averaged(windows.inputs, windows.steps_s, first)
     return replace(
@@ -32,6 +32,14 @@ def averaged_windows(windows: DenseWindows) -> DenseWindows:
         steps_s=np.append(np.diff(time_s), 0.0),
         travel_m=windows.travel_m[first],
     )
+
+
+def _rare_rows(windows: DenseWindows) -> IntArray:
+    """Samples at rows of odometry that come as rarely as steps last: no mean spans two of them."""
+    stamps_s = windows.run.odometry.stamps_s
+    if np.median(np.diff(stamps_s)) < LONGEST_S - ROUNDING_S:
+        return np.empty(0, dtype=np.int64)
+    return np.asarray(np.searchsorted(windows.time_s, stamps_s - stamps_s[0]))
 
 
 def reported_rates(run: Run, time_s: FloatArray) -> FloatArray | None:

@@ -1,10 +1,14 @@
 """Inputs averaged over short steps: what they keep, and how little a path changes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from odometry.models.inputs import Inputs
-from odometry.windows.averaged import LONGEST_S, averaged, averaging_steps
+from odometry.table import Table
+from odometry.windows.averaged import LONGEST_S, averaged, averaged_windows, averaging_steps
+from odometry.windows.dense import dense_windows_of
 from odometry.windows.motion import level_path
 
 
@@ -47,3 +51,16 @@ def test_a_path_of_ten_seconds_changes_by_less_than_a_millimetre(inputs):
     means = averaged(inputs, steps_s, first)
     coarse = path(means, np.append(np.diff(inputs.time_s[first]), 0.0))
     np.testing.assert_allclose(coarse[-1], path(inputs, steps_s)[-1], atol=1e-3)
+
+
+@pytest.mark.parametrize("rows", [2, 5, 10])
+def test_no_mean_spans_two_speeds_that_were_recorded_rarely(make_scene, rows):
+    """Speeds each 0.1 s and more, poses between them: a delay of what is smeared is no delay."""
+    run = make_scene(5, duration_s=60.0).run
+    kept = {name: column[::rows] for name, column in run.odometry.columns.items()}
+    kept["t"] = kept["t"] + 0.03
+    odometry = Table(run.odometry.file, kept, run.odometry.lines[::rows])
+    scene = averaged_windows(dense_windows_of(replace(run, odometry=odometry), 2.0))
+    means = scene.inputs.tread_speeds_m_s[:, 0]
+    off = np.abs(means[:, None] - kept["v_left"]).min(axis=1)
+    assert off.max() < 1e-9
