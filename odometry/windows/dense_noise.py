@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg.lapack import dtrtri
+from scipy.optimize import minimize
 
 from odometry.arrays import FloatArray
 from odometry.windows.dense import DenseWindows
-
-ORDER = (0, 4, 1, 2, 3)  # the part of most work last: it meets the smallest products alone
 
 
 def added_travel_m(scene: DenseWindows) -> FloatArray:
@@ -95,33 +94,30 @@ class Factors:
         gyroscope = columns[:, 3 * steps :]
         return np.asarray(gyroscope * self._seconds[:, : gyroscope.shape[1]])
 
-    def score(self, inverse: FloatArray, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Score (5,) and expected information (5, 5) of the variances.
+    def score(self, white: FloatArray, rows: FloatArray) -> FloatArray:
+        """Derivative (5,) of the log-likelihood by the five variances.
 
         Parameters
         ----------
-        inverse : (K, R, R)
-            Of the covariance.
+        white : (K, R, R)
+            Inverse Cholesky factors of the covariance.
         rows : (K, R)
             Residuals.
         """
+        inverse = white.swapaxes(1, 2) @ white
         weighted = inverse @ rows[..., None]
-        score, information = np.zeros(len(ORDER)), np.zeros((len(ORDER), len(ORDER)))
-        for count, part in enumerate(ORDER, 1):
+        found = np.zeros(PARTS)
+        for part in range(PARTS):
             columns = np.ascontiguousarray(self.times(part, inverse).swapaxes(1, 2))
-            for other in ORDER[:count]:
-                product = self.times(other, columns)
-                information[part, other] = information[other, part] = np.vdot(product, product) / 2
-            explained = np.trace(product, axis1=1, axis2=2).sum()  # of the part with itself
+            explained = np.trace(self.times(part, columns), axis1=1, axis2=2).sum()
             own = self.times(part, weighted)
-            score[part] = (np.vdot(own, own) - explained) / 2
-        return score, information
+            found[part] = (np.vdot(own, own) - explained) / 2
+        return found
 
 
 FIRST_GUESS = np.square([0.02, 0.01, 0.005, 0.005, 0.001])
 SMALLEST = np.square([1e-4, 1e-4, 1e-5, 1e-5, 1e-5])
-ROUNDS = 10
-CONVERGED = 1e-4  # share by which a variance may still change
+PARTS = 5  # variances
 MOST_WINDOWS = 60  # from which variances are estimated
 
 
@@ -196,29 +192,34 @@ def _whitening(covariance: FloatArray) -> FloatArray:
 def estimated_noise(
     scenes: Sequence[DenseWindows], residuals: Sequence[FloatArray], start: Noise | None = None
 ) -> Noise:
-    """Most likely variances of the residuals (K, R) of each scene, by Fisher scoring.
+    """Most likely variances of the residuals (K, R) of each scene, searched by their logarithms.
 
     Those of positions are beyond what is known of their rounding. `start` is an answer to nearly
     the same residuals.
     """
-    chosen, rows = [], []
+    parts = []
     share = MOST_WINDOWS / max(1, sum(map(len, scenes)))
     for scene, of in zip(scenes, residuals, strict=True):
         most = min(max(1, round(share * len(scene))), len(scene))
         picked = np.unique(np.linspace(0, len(scene) - 1, most).astype(np.int64))
-        chosen.append(replace(scene, windows=scene.windows[picked]))
-        rows.append(of[picked].reshape(len(picked), -1))
-    factors = [Factors(scene) for scene in chosen]
-    variances = FIRST_GUESS.copy() if start is None else start.all_variances
-    for _ in range(ROUNDS):
-        score, information = np.zeros(len(variances)), np.zeros((len(variances),) * 2)
-        for scene, one, of in zip(chosen, factors, rows, strict=True):
-            white = _whitening(one.covariance(with_rounding(variances, scene)))
-            scored = one.score(white.swapaxes(1, 2) @ white, of)
-            score, information = score + scored[0], information + scored[1]
-        step = np.linalg.lstsq(information, score, rcond=None)[0]
-        before = variances
-        variances = np.clip(variances + step, np.maximum(SMALLEST, variances / 20), 20 * variances)
-        if np.all(np.abs(variances - before) <= CONVERGED * before):
-            break
-    return Noise(*np.sqrt(variances).tolist())
+        chosen = replace(scene, windows=scene.windows[picked])
+        parts.append((chosen, Factors(chosen), of[picked].reshape(len(picked), -1)))
+
+    def unlikely(logarithms: FloatArray) -> tuple[float, FloatArray]:
+        variances, likelihood, score = np.exp(logarithms), 0.0, np.zeros(len(logarithms))
+        for scene, factors, rows in parts:
+            white = _whitening(factors.covariance(with_rounding(variances, scene)))
+            likelihood += _log_likelihood(white, rows)
+            score += factors.score(white, rows)
+        return -likelihood, -score * variances
+
+    begin = FIRST_GUESS if start is None else np.maximum(start.all_variances, SMALLEST)
+    bounds = [(least, None) for least in np.log(SMALLEST)]
+    found = minimize(unlikely, np.log(begin), jac=True, method="L-BFGS-B", bounds=bounds)
+    return Noise(*np.exp(found.x / 2).tolist())
+
+
+def _log_likelihood(white: FloatArray, rows: FloatArray) -> float:
+    """Of residuals (K, R) by their whiteners (K, R, R), but for a constant."""
+    left = white @ rows[..., None]
+    return float(np.log(np.diagonal(white, axis1=1, axis2=2)).sum() - np.vdot(left, left) / 2)

@@ -1,6 +1,7 @@
 """What noise explains of a window, beside simulated noise."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -106,3 +107,29 @@ def test_the_most_likely_variances_are_the_true_ones(make_scene, rng, noise):
     assert (sigmas < 0.6 * noise.variances).all()
     windows_used = 60 / sum(map(len, scenes))
     assert off @ (windows_used * information) @ off < 18.5  # 99.9 % of chi-squared of four
+
+
+def test_no_other_variances_are_more_likely(make_scene, rng):
+    """Where a yaw drifts and a gyroscope follows the motion, which no sum of the five parts is.
+
+    Scoring by expected information took the wandering turn and the gyroscope in turn for ever.
+    """
+    scene = make_scene(5, duration_s=80.0)
+    rates = np.zeros(len(scene.time_s))
+    scene = replace(scene, inputs=replace(scene.inputs, yaw_rate_rad_s=rates))
+    count, steps, _ = scene.measured.shape
+    drift = np.arange(1, steps + 1) * rng.normal(0, 3e-4, (count, 1))
+    moved = rng.normal(0, 0.01, (count, steps, 3))
+    moved[..., 2] = drift + rng.normal(0, 1e-3, (count, steps))
+    gyroscope = np.diff(drift, axis=1, prepend=0.0) + rng.normal(0, 1e-5, (count, steps))
+    rows = np.concatenate([moved.reshape(count, -1), gyroscope], axis=1)
+    found = estimated_noise([scene], [rows])
+
+    def likelihood(variances):
+        white = whitening(scene, Noise(*np.sqrt(variances)))
+        left = np.einsum("kij,kj->ki", white, rows)
+        return np.log(np.diagonal(white, axis1=1, axis2=2)).sum() - np.sum(left**2) / 2
+
+    best = likelihood(found.all_variances)
+    for factors in itertools.product([1 / 1.5, 1.0, 1.5], repeat=5):
+        assert likelihood(found.all_variances * factors) < best + 0.5
