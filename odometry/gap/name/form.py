@@ -34,6 +34,7 @@ from odometry.gap.name.form_gates import (
     is_special,
     is_sure_of_its_essence,
 )
+from odometry.gap.name.one_cause import is_more_than_one
 from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import root_mean_square
 
@@ -49,6 +50,10 @@ def of_their_form(search: Search, found: Explanation, smooth: Sequence[Residual]
     """
     alone = names_alone(search.fitter, found)
     names = [added.effect for added in alone.effects]
+    if reason := is_more_than_one(search, alone, smooth):
+        for name in names:
+            search.refuse(name, reason)
+        return replace(found, steps=())
     for place, effect in enumerate(names):
         instead = smooth_in_place(search, alone, place, smooth)
         reason = is_special(instead) or _of_no_form(search, found, alone, place)
