@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import t
 
 from odometry.arrays import FloatArray
 from odometry.errors import OdometryError
@@ -27,8 +28,9 @@ IN_TIME = len(TRIED_S) // 2
 LENGTHS_M = (5.0, 10.0, 20.0, 40.0)
 PERIODS = (0.0, 0.5, -0.5)  # by which rates at their stamps, means after and before them are early
 # Shares of the misfit as recorded, at most: in the geometric mean over lengths, and over each.
-LATE_CLEARLY, LATE_EACH, MEANS_CLEARLY = 0.9, 0.95, 0.9
+LATE_CLEARLY, LATE_EACH = 0.9, 0.95
 BESIDE_TREADS = 0.97  # of the misfit with late treads alone, whatever the rates mean
+SURE, OF_MEANING = 0.95, (0, 2)  # places of the lengths by which a meaning surely fits better
 EXACT_M = 1e-9  # misfits below are rounding, as of a robot that stands
 
 
@@ -60,16 +62,24 @@ def timings_of(runs: Sequence[Run]) -> tuple[Timing, ...]:
     recorded.
     """
     compared = [_compared(run) for run in runs]
-    rises, positions = np.zeros(len(PERIODS)), 1
-    for of in compared:
-        if of is not None:
-            least = of.mean_logs.min(axis=(1, 2))
-            rises += of.positions * (least - least[0])
-            positions += of.positions
-    best = int(np.argmin(rises))
-    if rises[best] > positions * np.log(MEANS_CLEARLY):
-        best = 0
-    return tuple(Timing() if of is None else of.timing(best) for of in compared)
+    known = [of for of in compared if of is not None]
+    meaning = max(_meaning(known, place) for place in OF_MEANING)[1] if known else 0
+    return tuple(Timing() if of is None else of.timing(meaning) for of in compared)
+
+
+def _meaning(compared: Sequence["_Compared"], place: int) -> tuple[float, int]:
+    """How surely the best meaning of yaw rates fits better than rates at their stamps, and which.
+
+    By the lower bound of the gain of log-likelihood over pieces of path of one of LENGTHS_M; 0 and
+    0 where it is less.
+    """
+    gains = np.concatenate([of.gains(place) for of in compared], axis=1)
+    best, count = int(np.argmax(gains.sum(axis=1))), gains.shape[1]
+    if count < 2 or not best:
+        return 0.0, 0
+    reach = t.ppf(SURE, count - 1) * np.sqrt(count) * gains[best].std(ddof=1)
+    sure = float(gains[best].sum() - reach)
+    return (sure, best) if sure > 0 else (0.0, 0)
 
 
 def _compared(run: Run) -> "_Compared | None":
@@ -86,14 +96,12 @@ class _Compared:
 
     Attributes
     ----------
-    positions : int
     mean_logs : (3, 2, D)
         Logarithm of the misfit, mean over LENGTHS_M. For each of PERIODS and of TRIED_S:
         positions late, and treads alone.
     """
 
     def __init__(self, record: Record, rates_rad_s: FloatArray) -> None:
-        self.positions = len(record.poses)
         self._record = record
         self._rates = rates_rad_s
         self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
@@ -109,6 +117,20 @@ class _Compared:
             ]
         )
         self.mean_logs = self._logs.mean(axis=-1)
+
+    def gains(self, place: int) -> FloatArray:
+        """By how much (3, P) each meaning is more likely in each piece than rates at their stamps.
+
+        Each with the delay that fits it best, of positions or of treads alone.
+        """
+        logarithms = []
+        for early_s, mean_logs in zip(self._early_s, self.mean_logs, strict=True):
+            treads_alone, delay = np.unravel_index(np.argmin(mean_logs), mean_logs.shape)
+            late_s = float(TRIED_S[delay])
+            turns_late_s = early_s if treads_alone else late_s + early_s
+            misfits_m, counts = self._shape.of_pieces(*self._delayed(late_s, turns_late_s))[place]
+            logarithms.append(counts * np.log(np.maximum(misfits_m, EXACT_M)))
+        return np.asarray(logarithms[0] - np.array(logarithms), dtype=np.float64)
 
     def timing(self, meaning: int) -> "Timing":
         """How late positions are, for one meaning of the yaw rates; 0 where that is not clear."""
@@ -128,9 +150,15 @@ class _Compared:
         return Timing(float(near_s[np.argmin(logs)]), early_s)
 
     def _log_misfits(self, late_s: float, turns_late_s: float) -> FloatArray:
-        speeds = _delayed(self._record, self._speeds, late_s)
-        rates = _delayed(self._record, self._rates, turns_late_s)
-        return np.log(np.maximum(self._shape.misfits_m(speeds, rates), EXACT_M))
+        misfits_m = self._shape.misfits_m(*self._delayed(late_s, turns_late_s))
+        return np.log(np.maximum(misfits_m, EXACT_M))
+
+    def _delayed(self, late_s: float, turns_late_s: float) -> tuple[FloatArray, FloatArray]:
+        """Mean tread speeds and yaw rates (N,), each later by its time."""
+        return (
+            _delayed(self._record, self._speeds, late_s),
+            _delayed(self._record, self._rates, turns_late_s),
+        )
 
 
 def _period_s(record: Record) -> float:

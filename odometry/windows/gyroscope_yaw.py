@@ -64,7 +64,17 @@ class PathShape:
         self._measured = [_centred(places, piece) for piece in self._pieces]
 
     def misfits_m(self, speeds_m_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
-        """Sums of distances [m] between the positions and the path of yaw rates (N,), by length.
+        """Sums (L,) of distances [m] between the positions and the path of yaw rates (N,).
+
+        See `of_pieces`.
+        """
+        of_pieces = self.of_pieces(speeds_m_s, rates_rad_s)
+        return np.array([distances.sum() for distances, _ in of_pieces])
+
+    def of_pieces(
+        self, speeds_m_s: FloatArray, rates_rad_s: FloatArray
+    ) -> list[tuple[FloatArray, IntArray]]:
+        """For each length, sums (P,) of distances [m] of its pieces, and of how many positions.
 
         The body moves by a share of the mean tread speeds (N,), and, forward and aside, by a
         length times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each
@@ -74,11 +84,16 @@ class PathShape:
             _path(moved, rates_rad_s, self._steps_s)[self._samples]
             for moved in (speeds_m_s, rates_rad_s)
         ]
-        of_pieces = zip(self._measured, self._pieces, strict=True)
-        return np.array([_misfit_m(measured, paths, piece) for measured, piece in of_pieces])
+        return [
+            (np.bincount(piece, _distances(measured, paths, piece)), np.bincount(piece))
+            for measured, piece in zip(self._measured, self._pieces, strict=True)
+        ]
 
 
-def _misfit_m(measured: ComplexArray, paths: Sequence[ComplexArray], piece: IntArray) -> float:
+def _distances(
+    measured: ComplexArray, paths: Sequence[ComplexArray], piece: IntArray
+) -> FloatArray:
+    """Between measured places (M,) and those of two paths, fitted to each piece."""
     forward, turning = (_centred(path, piece) for path in paths)
     own = _summed(np.abs(forward) ** 2, piece).real
     share = _summed(np.conj(forward) * turning, piece) / np.maximum(own, TINY)
@@ -87,7 +102,7 @@ def _misfit_m(measured: ComplexArray, paths: Sequence[ComplexArray], piece: IntA
         own = _summed(np.abs(part) ** 2, piece).real
         factor = _summed(np.conj(part) * measured, piece) / np.maximum(own, TINY)
         measured = measured - factor[piece] * part
-    return float(np.abs(measured).sum())
+    return np.abs(measured)
 
 
 def _path(moved: FloatArray, rates: FloatArray, steps_s: FloatArray) -> ComplexArray:

@@ -65,9 +65,11 @@ def with_means(run, early_s):
     return replace(run, imu=table({"t": middles_s - early_s, "gyro_z": means}))
 
 
+@pytest.mark.parametrize("noise_m", [0.01, 0.04])
 @pytest.mark.parametrize("early_s", [0.0, 0.1, -0.1])
-def test_yaw_rates_that_are_means_over_their_period_are_known_for_that(early_s):
-    run = emptied(with_means(drive(3, noise_m=0.01, gyroscope=True, duration_s=200.0), early_s))
+def test_yaw_rates_that_are_means_over_their_period_are_known_for_that(early_s, noise_m):
+    """Also where most of the misfit is noise of positions: no meaning takes a tenth of it."""
+    run = emptied(with_means(drive(3, noise_m=noise_m, gyroscope=True, duration_s=200.0), early_s))
     (timing,) = timings_of([run])
     assert timing == (0.0, pytest.approx(early_s))
 
