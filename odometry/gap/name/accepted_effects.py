@@ -221,7 +221,7 @@ class Standing(Search):
         last = fit.effects[-1]
         is_named = not isinstance(last.effect, Residual)
         reasons = [
-            is_new(last, self.fitter.calibration) if is_named else "",
+            is_new(last, self.fitter.calibration, self.config) if is_named else "",
             within_noise(self._at_first(held_out), self.config),
             raises_measured(self._believed_gap(), self._gap(fit), measure),
             *(

@@ -8,6 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.interface.base import Effect, MeasurementEffect
 from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added, delay_s
+from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import TOGETHER_S, Calibration
 from odometry.gap.prepare.pieces import pieces
 from odometry.gap.prepare.simulate import run_of, whitened_residuals
@@ -38,11 +39,12 @@ def in_calibration(
     return any(_pays(Added(effect, share * added.values), calibration) for share in PARTS)
 
 
-def is_new(added: Added, calibration: Calibration) -> str:
+def is_new(added: Added, calibration: Calibration, config: GapConfig) -> str:
     """Whether the calibration runs do not show an effect as much.
 
     They do where it surely pays there with the same values, and with more than half of them: it is
-    part of the noise floor, as what makes wheels no constant ICRs is.
+    part of the noise floor, as what makes wheels no constant ICRs is. What these runs hardly do, as
+    to go slowly, pays by rounding alone.
     """
     effect = added.effect
     if effect.course or not calibration.held_back:
@@ -51,7 +53,7 @@ def is_new(added: Added, calibration: Calibration) -> str:
     if any(effect.lacks(scene.inputs, calibration.base) for scene in known):
         return ""
     whole, half = (_all_gains(_share_of(added, share), calibration) for share in (1.0, 0.5))
-    if sure_sum(whole, BEST) <= 0 or whole.sum() < half.sum():
+    if sure_sum(whole, BEST) <= config.equivalent_margin or whole.sum() < half.sum():
         return ""
     return "the calibration runs show as much of it: it is not what is missing"
 

@@ -104,8 +104,16 @@ def known_small(known):
 @pytest.mark.parametrize(("scale", "new"), [(0.95, False), (0.88, True), (1.05, True)])
 def test_a_name_is_new_that_the_calibration_does_not_show_as_much(known, known_small, scale, new):
     wheels = Added(WheelScale(), np.full(2, scale))
-    assert is_new(wheels, known) == ""
-    assert (is_new(wheels, known_small) == "") == new
+    assert is_new(wheels, known, CONFIG) == ""
+    assert (is_new(wheels, known_small, CONFIG) == "") == new
+
+
+@pytest.mark.parametrize(("gain", "new"), [(1e-10, True), (0.3, True), (3.0, False)])
+def test_what_the_calibration_hardly_does_it_does_not_show(known, monkeypatch, gain, new):
+    """A dead zone below all of its speeds gains what rounding leaves, in each stretch."""
+    gains = [np.full(12, gain), np.full(12, gain / 2)]
+    monkeypatch.setattr("odometry.gap.name.in_calibration._all_gains", lambda *_: gains.pop(0))
+    assert (is_new(Added(WheelScale(), np.full(2, 0.95)), known, CONFIG) == "") == new
 
 
 def test_a_name_that_the_calibration_shows_as_much_does_not_stand(known, known_small, make_scene):
