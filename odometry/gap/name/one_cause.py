@@ -20,7 +20,7 @@ def is_more_than_one(search: Search, names: Fitted, smooth: Sequence[Residual]) 
     """
     if len(names.effects) < 2 or any(added.effect.slow for added in names.effects):
         return ""
-    fitter, config, start = search.fitter, search.config, search.start
+    fitter, config, start = search.fitter, search.config, search.fitter.fit([])
     losses = fitter.linear_losses(start, smooth)
     most = names.cost + config.beyond_first_order * (start.cost - names.cost)
     promising = np.argsort(losses, kind="stable")[: config.promising_in_place]

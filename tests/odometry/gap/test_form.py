@@ -70,6 +70,7 @@ def test_a_name_that_passed_by_what_another_did_is_tested_again(monkeypatch):
 
     monkeypatch.setattr("odometry.gap.name.form.smooth_in_place", in_place)
     monkeypatch.setattr("odometry.gap.name.form._of_no_form", lambda *_: "")
+    monkeypatch.setattr("odometry.gap.name.form.is_more_than_one", lambda *_: "")
     refused = []
     search = SimpleNamespace(
         fitter=SimpleNamespace(fit=lambda effects, _: explained(effects).fitted),

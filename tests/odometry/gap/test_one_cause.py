@@ -34,7 +34,7 @@ def asked(make_scene, known):
 
         scene = make_scene(9, planted).numbered(0)
         fitter = Fitter(known, measured_of([scene], known, CONFIG))
-        search = SimpleNamespace(fitter=fitter, start=fitter.fit([]), config=CONFIG)
+        search = SimpleNamespace(fitter=fitter, config=CONFIG)
         smooth = shares_of_motion([scene], known.base, CONFIG)
         return is_more_than_one(search, fitter.fit(effects), smooth)
 
