@@ -117,6 +117,7 @@ class Factors:
 
 FIRST_GUESS = np.square([0.02, 0.01, 0.005, 0.005, 0.001])
 SMALLEST = np.square([1e-4, 1e-4, 1e-5, 1e-5, 1e-5])
+LARGEST = 1e4  # times a variance: a search that goes farther at once leaves no definite covariance
 PARTS = 5  # variances
 MOST_WINDOWS = 60  # from which variances are estimated
 
@@ -214,7 +215,7 @@ def estimated_noise(
         return -likelihood, -score * variances
 
     begin = FIRST_GUESS if start is None else np.maximum(start.all_variances, SMALLEST)
-    bounds = [(least, None) for least in np.log(SMALLEST)]
+    bounds = np.log([SMALLEST, LARGEST * np.maximum(begin, FIRST_GUESS)]).T
     found = minimize(unlikely, np.log(begin), jac=True, method="L-BFGS-B", bounds=bounds)
     return Noise(*np.exp(found.x / 2).tolist())
 

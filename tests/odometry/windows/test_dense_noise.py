@@ -133,3 +133,12 @@ def test_no_other_variances_are_more_likely(make_scene, rng):
     best = likelihood(found.all_variances)
     for factors in itertools.product([1 / 1.5, 1.0, 1.5], repeat=5):
         assert likelihood(found.all_variances * factors) < best + 0.5
+
+
+@pytest.mark.parametrize("far_m", [1.0, 1000.0])
+def test_a_window_that_is_far_off_leaves_a_noise(make_scene, rng, far_m):
+    """A search without an end goes to variances whose covariance is not definite in floats."""
+    scene = make_scene(5, duration_s=80.0)
+    rows = rng.normal(0.0, 0.01, scene.measured.shape)
+    rows[3] *= 100.0 * far_m
+    assert np.isfinite(estimated_noise([scene], [rows]).variances).all()
