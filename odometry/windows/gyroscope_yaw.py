@@ -84,10 +84,11 @@ class PathShape:
             _path(moved, rates_rad_s, self._steps_s)[self._samples]
             for moved in (speeds_m_s, rates_rad_s)
         ]
-        return [
-            (np.bincount(piece, _distances(measured, paths, piece)), np.bincount(piece))
-            for measured, piece in zip(self._measured, self._pieces, strict=True)
-        ]
+        found = []
+        for measured, piece in zip(self._measured, self._pieces, strict=True):
+            sums = np.bincount(piece, _distances(measured, paths, piece)).astype(np.float64)
+            found.append((sums, np.bincount(piece)))
+        return found
 
 
 def _distances(
