@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.heading_check import HeadingCheck, heading_check
+from odometry.modes.held_rates import held_rates
 from odometry.modes.measured_steps import (
     MeasuredTravel,
     MeasuredTurn,
@@ -89,8 +90,8 @@ class Signals:
 def velocity_signals(run: Run) -> Signals:
     """Speed and yaw rate (N, 2) at the stamps of odometry.csv.
 
-    The yaw rate is that of the gyroscope, or wz of velocity.csv; the speed is vx of velocity.csv,
-    and else not measured: that of the wheels is the input.
+    The yaw rate is that of the gyroscope, or wz of velocity.csv, where it is not one reading held;
+    the speed is vx of velocity.csv, and else not measured: that of the wheels is the input.
 
     Raises
     ------
@@ -109,8 +110,8 @@ def velocity_signals(run: Run) -> Signals:
     speed = np.full(len(stamps_s), np.nan)
     if run.velocity is not None:
         speed = _nearest(run.velocity.stamps_s, run.velocity["vx"], stamps_s)
-    measured = np.column_stack([speed, omega])
     speeds = run.odometry.stack("v_left", "v_right")
+    measured = np.column_stack([speed, np.where(held_rates(omega, speeds), np.nan, omega)])
     gaps_s = odometry_gaps(run).spans_s
     checks = heading_check(run), measured_travel(run), measured_turn(run)
     blocked_s = blocked_spans(stamps_s, speeds, omega, run.robot.track_width)

@@ -1,10 +1,10 @@
 """How one quantity answers to others: a first-order lag, fitted to what it simulates."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar, nnls
+from scipy.optimize import minimize_scalar
 from scipy.signal import lfilter
 
 from odometry.arrays import FloatArray, IntArray
@@ -14,7 +14,6 @@ LOG_RATE_TOLERANCE = 1e-9  # the file is then the same on other processors, but 
 RIDGE = 1e-3  # of the mean square of an input: what inputs that go together leave open is small
 BLOCK_S = 2.0  # over which errors of a model are correlated
 LEAST_VARIANCE = 1e-10
-LEAST_TURN_RAD_S, LEAST_TURN_S, LEAST_TURNS = 0.1, 1.0, 5  # of which a gain says something
 
 SHORTEST_LAG_S = 1e-3
 
@@ -93,7 +92,7 @@ class Errors:
 
 def errors_of(records: Sequence[Record], row: int, response: Response) -> Errors:
     """Errors of the simulation of whole records; they last, and `power` states how long."""
-    left = [_left(record, row, response) for record in records]
+    left = [left_of(record, row, response) for record in records]
     blocks = [
         block_powers(errors, record.step_s) for errors, record in zip(left, records, strict=True)
     ]
@@ -102,71 +101,20 @@ def errors_of(records: Sequence[Record], row: int, response: Response) -> Errors
     return Errors(variance, float(powers.mean()) if len(powers) else 0.0)
 
 
-def growing_power(
-    records: Sequence[Record], row: int, response: Response, *, by: int
-) -> FloatArray:
-    """Power of errors (2,) at low frequency: where column `by` is 0, and what its square adds."""
-    blocks = [
-        (
-            block_powers(_left(record, row, response), record.step_s),
-            block_means(record.table[:, by] ** 2, record.step_s),
-        )
-        for record in records
-    ]
-    powers = np.concatenate([power for power, _ in blocks])
-    squares = np.concatenate([square for _, square in blocks])
-    if not len(powers):
-        return np.zeros(2)
-    values, _ = nnls(np.column_stack([np.ones(len(powers)), squares]), powers)
-    return np.asarray(values)
-
-
-def gain_spread(records: Sequence[Record], row: int, response: Response) -> float:
-    """Standard deviation of the gain from one turn to the next, as a share of it.
-
-    Of what is measured over what the response predicts, turn by turn, beyond what noise that does
-    not grow with the turn makes of it (the moment estimate of DerSimonian and Laird 1986,
-    Controlled Clinical Trials 7, 177). A gain that depends on the run, on the speed or on how tight
-    a turn is differs from turn to turn, and no noise of single measurements tells of that.
-    """
-    noise = float(growing_power(records, row, response, by=row)[0])
-    found = [turn for one in records for turn in _gains_of_turns(one, row, response)]
-    gains, squares = np.array(found).reshape(-1, 2).T
-    if len(gains) < LEAST_TURNS:
-        return 0.0
-    weights = squares / max(noise, LEAST_VARIANCE)
-    mean = weights @ gains / weights.sum()
-    beyond = weights @ (gains - mean) ** 2 - (len(gains) - 1)
-    scale = weights.sum() - weights @ weights / weights.sum()
-    return float(np.sqrt(max(beyond / scale, 0.0)) / abs(mean))
-
-
-def _gains_of_turns(record: Record, row: int, response: Response) -> Iterator[tuple[float, float]]:
-    """Of each turn to one side the gain, and the time integral of what is predicted, squared."""
-    inputs, target = simulated(record, row, response.rate_hz)
-    predicted = inputs @ response.gains
-    side = np.where(np.abs(predicted) > LEAST_TURN_RAD_S, np.sign(predicted), 0.0)
-    changes = np.flatnonzero(np.diff(side)) + 1
-    for turn in np.split(np.arange(len(side)), changes):
-        if side[turn[0]] and len(turn) * record.step_s >= LEAST_TURN_S:
-            square = float(predicted[turn] @ predicted[turn])
-            yield float(predicted[turn] @ target[turn]) / square, square * record.step_s
-
-
 def block_powers(errors: FloatArray, step_s: float) -> FloatArray:
     """Power at low frequency (K,): squared means over blocks of seconds, times their duration."""
     return np.asarray(_block_size(step_s) * step_s * block_means(errors, step_s) ** 2)
 
 
-def block_means(values: FloatArray, step_s: float) -> FloatArray:
+def block_means(values: FloatArray, step_s: float, block_s: float = BLOCK_S) -> FloatArray:
     """Means (K,) of values (N,) over blocks of seconds."""
-    size = _block_size(step_s)
+    size = _block_size(step_s, block_s)
     count = len(values) // size
     return np.asarray(values[: count * size].reshape(count, size).mean(axis=1))
 
 
-def _block_size(step_s: float) -> int:
-    return max(1, round(BLOCK_S / step_s))
+def _block_size(step_s: float, block_s: float = BLOCK_S) -> int:
+    return max(1, round(block_s / step_s))
 
 
 def gains_at(records: Sequence[Record], row: int, rate_hz: float) -> tuple[FloatArray, float]:
@@ -213,7 +161,8 @@ def without_biases(
     return Response(response.rate_hz, gains)
 
 
-def _left(record: Record, row: int, response: Response) -> FloatArray:
+def left_of(record: Record, row: int, response: Response) -> FloatArray:
+    """What a response does not explain (N,) of quantity `row`."""
     inputs, target = simulated(record, row, response.rate_hz)
     return np.asarray(target - inputs @ response.gains)
 

@@ -70,7 +70,7 @@ def contradictions(
         "turns_are_off": off if gains_are_off is None else off | gains_are_off,
         "travel": travel_check(signals, modes, config),
         "between": between_modes(signals, modes, *believed),
-        "headings_disagree": turns_disagree(signals, modes, left.leading, biases_rad_s, config),
+        "headings_disagree": turns_disagree(signals, modes, left.leading, bias, config),
     }
 
 

@@ -13,8 +13,9 @@ from odometry.modes.measured_steps import MeasuredTurn, StepWindows, during, ste
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.velocity import VelocityModes
 
-WINDOWS_S = (5.0, 10.0)
+WINDOWS_S = (5.0, 10.0, 20.0, 40.0, 80.0)  # in the long ones slow robots turn as well
 GYROSCOPE_RAD = 0.01  # by which a gyroscope is off in a window for other reasons
+MOST_SIGMAS = 6.0  # of a step, beside as much as it turns: more is a spike, and no scale
 HOLDS_S = 5.0  # what a window says, where no later one does
 """`headings_share` and `headings_sigmas` of `ModesConfig` were chosen on seeds 62 to 65 of
 `tests/studies/modes_faults.py`: with a half instead of a third modes on a gyroscope with a soft
@@ -26,7 +27,7 @@ def turns_disagree(
     signals: Signals,
     modes: VelocityModes,
     leading: IntArray,
-    biases_rad_s: FloatArray,
+    bias: tuple[FloatArray, FloatArray],
     config: ModesConfig | None = None,
 ) -> BoolArray | None:
     """Where (N,) headings contradict what the gyroscope turned; None without both.
@@ -37,8 +38,8 @@ def turns_disagree(
     modes : VelocityModes
     leading : (N,)
         The most probable mode.
-    biases_rad_s : (N,)
-        Of the filters.
+    bias : (N,), (N,)
+        Of the filters, and its standard deviation [rad/s].
     config : ModesConfig, optional
     """
     config = config or ModesConfig()
@@ -52,12 +53,12 @@ def turns_disagree(
         signals.stamps_s,
         modes.steady_yaw_rates(signals.tread_speeds_m_s).T,
     )
-    biases = during(turn.begin_s, turn.end_s, signals.stamps_s, biases_rad_s)
+    biases, sigmas = during(turn.begin_s, turn.end_s, signals.stamps_s, np.array(bias))
     for window_s in WINDOWS_S:
         windows = step_windows(turn.begin_s, turn.end_s, window_s)
         if len(windows):
             last, known = windows.in_force(signals.stamps_s, HOLDS_S)
-            off = _off(turn, windows, (said, biases), config)
+            off = _off(turn, windows, (said, biases, sigmas), config)
             disagree |= known & off[leading, last]
     return disagree
 
@@ -65,20 +66,26 @@ def turns_disagree(
 def _off(
     turn: MeasuredTurn,
     windows: StepWindows,
-    steps: tuple[FloatArray, FloatArray],
+    steps: tuple[FloatArray, FloatArray, FloatArray],
     config: ModesConfig,
 ) -> BoolArray:
-    """Windows (M, W) in which the gyroscope is too far off; steps: of each mode, and of biases."""
-    said, biases = steps
+    """Windows (M, W) in which the gyroscope is too far off.
+
+    Steps (M, K), (K,), (K,): what each mode turns, what the bias does, and its deviation [rad].
+    """
+    said, biases, sigmas = steps
     side = np.sign(said.mean(axis=0))
     # stamps of poses err where a chain begins and ends: a window with a break says nothing
     breaks = np.append(False, turn.begin_s[1:] > turn.end_s[:-1])
     read = np.where(breaks, np.nan, turn.gyroscope_rad - biases)
-    apart = windows.sums(side * (read - turn.heading_rad))
+    most_rad = np.abs(turn.heading_rad) + MOST_SIGMAS * np.sqrt(2.0) * turn.noise_rad
+    apart = windows.sums(side * np.clip(read - turn.heading_rad, -most_rad, most_rad))
     late = _lateness(windows, read, turn.heading_rad)
     apart = np.abs(np.nan_to_num(apart[late, np.arange(len(windows))]))
     turns_back = windows.sums(np.append(0.0, side[1:] != side[:-1]))
-    noise = np.hypot(turn.noise_rad * np.sqrt(2 * (1 + turns_back)), GYROSCOPE_RAD)
+    # the bias is one: what it is off by in turns to one side is taken back in those to the other
+    of_bias = np.hypot(windows.sums(side * sigmas), GYROSCOPE_RAD)
+    noise = np.hypot(turn.noise_rad * np.sqrt(2 * (1 + turns_back)), of_bias)
     turned = windows.sums(side * said)
     between = np.abs(turned[:, None] - turned)
     between[np.arange(len(said)), np.arange(len(said))] = np.inf

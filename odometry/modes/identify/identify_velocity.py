@@ -10,15 +10,15 @@ from odometry.errors import IdentificationError
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, forward_speed_m_s, velocity_signals
+from odometry.modes.identify.gain_spread import gain_spread
 from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
+from odometry.modes.identify.travel_power import travel_power
 from odometry.modes.response import (
     Record,
     Response,
     errors_of,
     fitted_response,
-    gain_spread,
-    growing_power,
     without_biases,
 )
 from odometry.modes.velocity import VelocityModes
@@ -102,7 +102,7 @@ def identify_velocity_modes(
             measurement[place, row] = errors.variance
             lasting_s.append(errors.power / errors.variance)
             if row == SPEED:
-                speed_power[place] = growing_power(records[name], row, response, by=OMEGA)
+                speed_power[place] = travel_power(records[name], row, response, by=OMEGA)
             else:
                 spread[place] = gain_spread(records[name], row, response)
                 of_turns[name] = response

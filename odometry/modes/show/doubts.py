@@ -1,73 +1,35 @@
 """Why no mode is named although one is probable, and which checks the data do not allow."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.modes.checks.between_modes import BetweenModes
 from odometry.modes.followed import Followed
 from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.show.doubt import Doubt, share_of_time, when
 from odometry.modes.show.gain_words import gain_words
+from odometry.modes.show.gyroscope_doubts import of_gyroscope
 from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported
 MOST_SCATTER = 2.0  # times that of identification: other faults of poses and terrains reach 1.5
 
 
-@dataclass(frozen=True)
-class Doubt:
-    """What keeps modes from being named.
-
-    Attributes
-    ----------
-    reason, remedy : str
-        A sentence without its full stop, and what to do.
-    share : float
-        Of the time.
-    """
-
-    reason: str
-    remedy: str
-    share: float
-
-
 def doubts(followed: Followed) -> tuple[Doubt, ...]:
     """Those that hold for a tenth of the time or longer, the longest first."""
     track = followed.last_track
     undetermined = followed.answers(track) == UNDETERMINED
-    found = []
-    if track.gyroscope is not None:
-        scale, open_ = track.gyroscope.scale, track.gyroscope.bias_is_open & undetermined
-        off = np.isfinite(scale)
-        if off.any():
-            found.append(
-                Doubt(
-                    f"the gyroscope reads {np.median(scale[off]):.2f} times what the measured "
-                    f"headings turn {_when(followed, off)}",
-                    "check the gyroscope (unit, scale, axes) and the stamps of the headings",
-                    _share(followed, off),
-                )
-            )
-        if open_.any():
-            found.append(
-                Doubt(
-                    f"a mode would need a gyroscope bias of {track.means[open_, -1][-1]:.3f} "
-                    f"rad/s {_when(followed, open_)}, which nothing else confirms",
-                    "let the robot rest for a second: that determines the bias",
-                    _share(followed, open_),
-                )
-            )
+    found = of_gyroscope(followed, undetermined)
     if track.alike is not None:
         sure = track.probabilities.max(axis=1) >= followed.config.sure
         alike = track.alike.any(axis=1) & sure & undetermined
         found.append(
             Doubt(
                 "the drive does not distinguish the most probable mode from another for "
-                f"{round(100 * _share(followed, alike))} % of the time",
+                f"{round(100 * share_of_time(followed, alike))} % of the time",
                 "drive turns of several radii to both sides: there modes differ most; where poses "
                 "are measured, traction modes distinguish terrains by sideways motion as well",
-                _share(followed, alike),
+                share_of_time(followed, alike),
             )
         )
     found += _of_motion(followed, undetermined)
@@ -108,7 +70,7 @@ def _of_motion(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
     found = []
     for off, said, advice in at_times:
         if off is not None:
-            share = _share(followed, off & counts)
+            share = share_of_time(followed, off & counts)
             found.append(Doubt(f"{said} for {round(100 * share)} % of the time", advice, share))
     if track.between is not None and track.between.holds.any():
         found.append(_between(followed, track.between))
@@ -123,19 +85,19 @@ def _of_poses(followed: Followed) -> list[Doubt]:
         found.append(
             Doubt(
                 f"the poses scatter {np.median(track.scatter[off]):.1f} times as far as in the "
-                f"runs of identification {_when(followed, off)}",
+                f"runs of identification {when(followed, off)}",
                 "identify the modes from runs with poses as noisy as these, or take velocity "
                 "modes, which are recognised by the gyroscope",
-                _share(followed, off),
+                share_of_time(followed, off),
             )
         )
     if track.blocked is not None and track.blocked.any():
         found.append(
             Doubt(
                 "the treads turn on the spot and the robot does not turn "
-                f"{_when(followed, track.blocked)}",
+                f"{when(followed, track.blocked)}",
                 "look whether the robot was blocked, its wheels spun, or the log held old speeds",
-                _share(followed, track.blocked),
+                share_of_time(followed, track.blocked),
             )
         )
     return found
@@ -154,9 +116,9 @@ def _of_travel(followed: Followed) -> list[Doubt]:
     return [
         Doubt(
             f"measured positions went {ratio:.2f} times as far as the most probable mode "
-            f"says {_when(followed, off)}",
+            f"says {when(followed, off)}",
             "check the size and pressure of the tyres, the load, and the positions",
-            _share(followed, off),
+            share_of_time(followed, off),
         )
     ]
 
@@ -173,9 +135,9 @@ def _of_gain(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
     return [
         Doubt(
             f"the robot turns by {said}, which is more than such turns differ by, for "
-            f"{round(100 * _share(followed, off))} % of the time",
+            f"{round(100 * share_of_time(followed, off))} % of the time",
             "identify a mode for this terrain, load or set of wheels, and check both treads",
-            _share(followed, off),
+            share_of_time(followed, off),
         )
     ]
 
@@ -185,7 +147,7 @@ def _of_drift(followed: Followed, undetermined: BoolArray) -> list[Doubt]:
     track = followed.last_track
     if track.drifts is None:
         return []
-    share = _share(followed, track.drifts & undetermined)
+    share = share_of_time(followed, track.drifts & undetermined)
     return [
         Doubt(
             "the robot drifts in one direction of the world, which no mode does, for "
@@ -203,25 +165,11 @@ def _between(followed: Followed, between: BetweenModes) -> Doubt:
     first, second = between.pairs[longest]
     return Doubt(
         f"the robot turns by more than {first} and by less than {second}, "
-        f"{np.median(between.share[rows]):.1f} of the way, {_when(followed, rows)}: none of these, "
+        f"{np.median(between.share[rows]):.1f} of the way, {when(followed, rows)}: none of these, "
         "between the two",
         "identify a mode for this terrain and load; check the gyroscope's scale and both treads",
-        _share(followed, rows),
+        share_of_time(followed, rows),
     )
-
-
-def _share(followed: Followed, rows: BoolArray) -> float:
-    lasts_s = np.append(np.diff(followed.last_track.stamps_s), 0.0)
-    return float(lasts_s @ rows) / max(float(lasts_s.sum()), 1e-12)
-
-
-def _when(followed: Followed, rows: BoolArray) -> str:
-    begin_s, end_s = followed.last_track.stamps_s[np.flatnonzero(rows)[[0, -1]]]
-    between = f"between {begin_s:.1f} s and {end_s:.1f} s"
-    if (np.diff(rows.astype(int)) == 1).sum() + rows[0] == 1:
-        return between
-    lasts_s = np.append(np.diff(followed.last_track.stamps_s), 0.0)
-    return f"for {float(lasts_s @ rows):.1f} s in all {between}"
 
 
 def not_checked(followed: Followed) -> tuple[str, ...]:

@@ -9,7 +9,8 @@ from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, 
 from odometry.modes.mode_set import NO_MODES, UNDETERMINED
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.show.camera_words import camera_words
-from odometry.modes.show.doubts import LEAST_DOUBT, Doubt, doubts, not_checked
+from odometry.modes.show.doubt import Doubt
+from odometry.modes.show.doubts import LEAST_DOUBT, doubts, not_checked
 
 WHOSE = {MOTION: "", MOTION_AND_FEEL: " with feel", MOTION_AND_CAMERA: " with camera"}
 FEW = 4  # stretches, or answers, that are given one by one

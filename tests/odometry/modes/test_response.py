@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from odometry.modes.identify.gain_spread import gain_spread
 from odometry.modes.response import (
     BLOCK_S,
     Record,
@@ -9,7 +10,6 @@ from odometry.modes.response import (
     block_powers,
     errors_of,
     fitted_response,
-    gain_spread,
     without_biases,
 )
 from tests.odometry.modes.mode_drives import integrated, wandering

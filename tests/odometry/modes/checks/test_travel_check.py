@@ -8,10 +8,11 @@ import pytest
 
 from odometry.modes.answers import named_modes
 from odometry.modes.checks.travel_check import WINDOWS_S, TravelCheck, travel_check
+from odometry.modes.identify.gain_spread import growing_power
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.measured_steps import measured_travel
 from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
-from odometry.modes.response import Record, Response, growing_power
+from odometry.modes.response import Record, Response
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.modes.mode_examples import track, velocity_set
@@ -105,5 +106,7 @@ def test_power_of_errors_grows_with_the_yaw_rate_as_put_in():
 
 def test_speed_power_is_identified_where_speeds_were_measured():
     known = replace(run_of(), settings={"run": {"terrain": "ice"}})
-    assert identify_velocity_modes([known]).speed_power.shape == (1, 2)
+    power = identify_velocity_modes([known]).speed_power
+    assert power.shape == (1, 2)
+    assert (power < 0.1 * NOISE_M**2).all()  # positions err, and the robot travels as it should
     assert identify_velocity_modes([replace(known, pose=None)]).speed_power is None

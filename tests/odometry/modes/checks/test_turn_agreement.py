@@ -14,6 +14,7 @@ from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 SIZE, TURN = 1500, 1.6
 NOISE_RAD = 0.01  # of a heading
+SLOWER = 10.0
 
 
 def with_gyro(run, change):
@@ -22,10 +23,10 @@ def with_gyro(run, change):
     return replace(run, odometry=replace(run.odometry, columns=columns))
 
 
-def disagree(run, turns=(TURN, 1.1 * TURN), bias_rad_s=0.0):
-    modes = velocity_set(turns).modes
-    leading = np.zeros(SIZE, dtype=int)
-    return turns_disagree(modes.signals(run), modes, leading, np.full(SIZE, bias_rad_s))
+def disagree(run, turns=(TURN, 1.1 * TURN), bias_rad_s=0.0, sigma_rad_s=0.0):
+    modes, size = velocity_set(turns).modes, len(run.odometry.stamps_s)
+    bias = np.full(size, bias_rad_s), np.full(size, sigma_rad_s)
+    return turns_disagree(modes.signals(run), modes, np.zeros(size, dtype=int), bias)
 
 
 def drive():
@@ -63,7 +64,7 @@ def test_steps_of_headings_add_up_to_what_the_gyroscope_turned():
 )
 def test_a_gyroscope_is_off_by_the_measure_of_the_modes(change, expected):
     found = disagree(with_gyro(drive(), change))
-    late = slice(round((max(WINDOWS_S) + 1.0) / 0.02), SIZE - 50)
+    late = slice(round((WINDOWS_S[1] + 1.0) / 0.02), SIZE - 50)
     assert found[late].mean() == pytest.approx(float(expected), abs=0.1)
 
 
@@ -86,11 +87,36 @@ def test_the_bias_of_the_filters_is_no_error():
     assert not disagree(run, bias_rad_s=0.05).any()
 
 
+def test_a_bias_that_is_not_known_well_may_be_what_one_side_is_off_by():
+    run = with_gyro(arc(), lambda rates: rates + 0.05)
+    assert not disagree(run, sigma_rad_s=0.02).any()
+
+
+@pytest.mark.parametrize(("factor", "expected"), [(1.0, False), (1.12, True)])
+def test_a_slow_robot_needs_longer_windows(factor, expected):
+    """A tenth of the pace, a tenth of the rates: ten seconds turn it by 0.2 rad."""
+    run = with_gyro(drive(), lambda rates: factor * rates)
+    slow = {name: run.odometry[name] / SLOWER for name in ("v_left", "v_right", "gyro_z")}
+    odometry = replace(run.odometry, columns=slow | {"t": SLOWER * run.odometry.stamps_s})
+    pose = replace(run.pose, columns=run.pose.columns | {"t": SLOWER * run.pose.stamps_s})
+    found = disagree(replace(run, odometry=odometry, pose=pose), sigma_rad_s=1e-4)
+    assert found[SIZE // 2 : -50].mean() == pytest.approx(float(expected), abs=0.2)
+
+
+def test_a_spike_is_no_scale_of_the_long_windows():
+    """Of two rows together, which a median of three leaves."""
+    late = 6.0 + WINDOWS_S[1] + HOLDS_S
+    spike = 30.0 * (np.arange(SIZE) // 2 == 150)  # at 6 s
+    found = disagree(with_gyro(drive(), lambda rates: rates + spike))
+    assert not found[round(late / 0.02) + 30 :].any()
+
+
 def test_nothing_is_said_without_headings_or_of_a_single_mode():
     assert disagree(replace(drive(), pose=None)) is None
     modes = velocity_set((TURN,), ("ice",)).modes
     signals = modes.signals(drive())
-    assert turns_disagree(signals, modes, np.zeros(SIZE, dtype=int), np.zeros(SIZE)) is None
+    bias = np.zeros(SIZE), np.zeros(SIZE)
+    assert turns_disagree(signals, modes, np.zeros(SIZE, dtype=int), bias) is None
 
 
 def test_what_a_window_says_is_forgotten():

@@ -107,3 +107,19 @@ def test_what_is_off_in_parts_says_for_how_long_in_all():
 
     assert "between 1.5 s and 2.5 s" in reason(3, 4, 5)
     assert "for 1.5 s in all between 0.5 s and 3.0 s" in reason(1, 2, 6)
+
+
+def test_a_gyroscope_that_repeats_one_reading_is_said():
+    run, mode_set = run_of(1.6, size=400), velocity_set(names=("a", "b"))
+    known = track(["a"] * 400, ["unknown"] * 400, names=("a", "b"))
+    rates = np.where(np.arange(400) > 200, run.odometry["gyro_z"][200], run.odometry["gyro_z"])
+    held = replace(
+        run, odometry=replace(run.odometry, columns=run.odometry.columns | {"gyro_z": rates})
+    )
+    said = [
+        one.reason
+        for of in (run, held)
+        for one in doubts(Followed(of, mode_set, ModesConfig(), mode_set.modes.signals(of), known))
+    ]
+    assert len(said) == 1
+    assert "the gyroscope repeats one reading between" in said[0]
