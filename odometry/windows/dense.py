@@ -14,12 +14,8 @@ from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.between import between
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import FEW_POSES, Record, record_of, straddling, words
-
-LEAST_POSES = 3  # of a window
-EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
-UNEVEN = 0.25  # a window may be longer or shorter by this share
-FEW = 0.1  # share of the windows that may be lost for having fewer poses than the others
+from odometry.windows.dense_spans import LEAST_POSES, windows_of_poses
+from odometry.windows.record import record_of, words
 
 
 @dataclass(frozen=True)
@@ -155,7 +151,7 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
     rows = np.searchsorted(run.odometry.stamps_s, record.stamps_s, side="right") - 1
     time_s = record.stamps_s - start_s
     pose_s = time_s[record.pose_samples]
-    windows, left_out = _windows(pose_s, record, time_s[-1], horizon_s)
+    windows, left_out = windows_of_poses(pose_s, record, time_s[-1], horizon_s)
     if not len(windows):
         reasons = words(left_out)
         raise WindowError(
@@ -182,44 +178,9 @@ def covered_s(run: Run, horizons_s: Sequence[float]) -> FloatArray:
     end_s = float(record.stamps_s[-1] - run.odometry.stamps_s[0])
     found = []
     for horizon_s in horizons_s:
-        windows, _ = _windows(pose_s, record, end_s, horizon_s)
+        windows, _ = windows_of_poses(pose_s, record, end_s, horizon_s)
         found.append(float(np.diff(pose_s[windows[:, [0, -1]]], axis=1).sum()))
     return np.array(found)
-
-
-def _windows(
-    pose_s: FloatArray, record: Record, end_s: float, horizon_s: float
-) -> tuple[IntArray, Counter[str]]:
-    """Poses (K, n + 1) of windows, and how many were left out.
-
-    n is what about nine windows in ten have, evenly chosen where there are more.
-    """
-    inside = (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
-    spans, stretch = [], record.stretch
-    for number in np.unique(stretch):
-        spans += _spans(pose_s, np.flatnonzero(inside & (stretch == number)), horizon_s)
-    unbroken = np.array(_spans(pose_s, np.flatnonzero(inside), horizon_s), dtype=np.int64)
-    left_out = straddling(record.breaks, *unbroken.reshape(-1, 2).T)
-    firsts, lasts = np.array(spans, dtype=np.int64).reshape(-1, 2).T
-    if not len(firsts):
-        return np.empty((0, LEAST_POSES), dtype=np.int64), left_out
-    steps = max(LEAST_POSES - 1, int(np.quantile(lasts - firsts, FEW)))
-    kept = lasts - firsts >= steps
-    left_out[FEW_POSES] += int(np.count_nonzero(~kept))
-    chosen = np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1))
-    return chosen.astype(np.int64), +left_out
-
-
-def _spans(pose_s: FloatArray, poses: IntArray, horizon_s: float) -> list[tuple[int, int]]:
-    """First and last pose of windows end to end, each as near the horizon as stamps allow."""
-    found, at = [], 0
-    while at < len(poses) - 1:
-        lasts_s = pose_s[poses[at + 1 :]] - pose_s[poses[at]]
-        end = int(np.argmin(np.abs(lasts_s - horizon_s)))
-        if abs(lasts_s[end] - horizon_s) <= UNEVEN * horizon_s:
-            found.append((int(poses[at]), int(poses[at + 1 + end])))
-        at += end + 1
-    return found
 
 
 def thinned(windows: DenseWindows, most: int) -> DenseWindows:

@@ -141,3 +141,33 @@ def test_pieces_of_several_runs_have_numbers_of_their_own(make_scene):
     pairs = [(i, p) for i, scene in enumerate(scenes) for p in pieces(scene, 10.0)]
     assert len(found) == sum(map(len, scenes))
     assert len(set(zip(found, pairs, strict=True))) == len(set(pairs)) == len(set(found))
+
+
+@pytest.mark.parametrize(("rest_s", "are_left_out"), [(30.0, False), (300.0, True)])
+def test_windows_of_a_robot_that_mostly_stands_are_those_in_which_it_moves(
+    run, rest_s, are_left_out
+):
+    driven = dense_windows_of(run, 2.0)
+    end_s = run.odometry.stamps_s[-1]
+    later_s = end_s + np.arange(0.05, rest_s, 0.05)
+    treads = dict.fromkeys(("v_left", "v_right"), np.zeros(len(later_s)))
+    odometry = extended(run.odometry, t=later_s, **treads)
+    last = {name: run.pose[name][-1] for name in ("x", "y", "yaw")}
+    poses = extended(run.pose, t=later_s[::2], **last)
+    rested = dense_windows_of(replace(run, odometry=odometry, pose=poses), 2.0)
+    assert (rested.left_out["treads stationary"] > 0) == are_left_out
+    if are_left_out:
+        assert abs(len(rested.windows) - len(driven.windows)) <= 2
+    else:
+        assert len(rested.windows) > len(driven.windows) + 10
+
+
+def extended(table, t, **added):
+    """The table with rows added at its end; columns that are not named are 0 there."""
+    columns = {
+        name: np.append(values, np.broadcast_to(added.get(name, 0.0), len(t)))
+        for name, values in table.columns.items()
+        if name != "t"
+    }
+    columns = {"t": np.append(table.stamps_s, t), **columns}
+    return replace(table, columns=columns, lines=np.arange(len(columns["t"])) + 2)
