@@ -44,11 +44,14 @@ class YawRate(NamedTuple):
         Finite.
     file : str
         Name of the file that they stand in.
+    odometry_s : (R,)
+        Stamps of the tread speeds beside them.
     """
 
     stamps_s: FloatArray
     yaw_rate_rad_s: FloatArray
     file: str
+    odometry_s: FloatArray
 
 
 def sensors_of(settings: Mapping[str, Any], where: str) -> Sensors:
@@ -82,9 +85,9 @@ def preferred_yaw_rate(imu: Table | None, odometry: Table, sensors: Sensors) -> 
     for table, rates, file in tables:
         there = np.isfinite(rates)
         if there.all():
-            return YawRate(table.stamps_s, rates, file)
+            return YawRate(table.stamps_s, rates, file, odometry.stamps_s)
         if there.any():
-            return YawRate(table.stamps_s[there], rates[there], file)
+            return YawRate(table.stamps_s[there], rates[there], file, odometry.stamps_s)
     return None
 
 
@@ -115,7 +118,8 @@ def _triple(
     )
 
 
-# Between two samples the turn is not known after both; a slow log is not silent from row to row.
+# Between two samples the turn is not known after both. A slow log is not silent from row to row;
+# beside faster treads, which say how the robot turns meanwhile, a slow gyroscope is.
 SILENT_S, SILENT_PERIODS = 0.5, 2.5
 
 
@@ -159,11 +163,17 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
     integrals = np.zeros((4, len(yaw_rate.stamps_s)))
-    silent_s = max(SILENT_S, SILENT_PERIODS * float(np.median(np.diff(yaw_rate.stamps_s))))
+    period_s = min(_period_s(yaw_rate.stamps_s), _period_s(yaw_rate.odometry_s))
+    silent_s = max(SILENT_S, SILENT_PERIODS * period_s)
     every = _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s, silent_s)
     for of, steps in zip(integrals, every, strict=True):
         np.cumsum(steps, out=of[1:])
     return Gyroscope(yaw_rate.stamps_s, integrals.T)
+
+
+def _period_s(stamps_s: FloatArray) -> float:
+    """Usual time between stamps (N,); 0 of fewer than two."""
+    return float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
 
 
 def step_integrals(stamps_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:

@@ -178,4 +178,4 @@ def without_spikes(yaw_rate: YawRate) -> YawRate:
     """The median of each three samples."""
     values = yaw_rate.yaw_rate_rad_s.copy()
     values[1:-1] = np.median(np.stack([values[:-2], values[1:-1], values[2:]]), axis=0)
-    return YawRate(yaw_rate.stamps_s, values, yaw_rate.file)
+    return yaw_rate._replace(yaw_rate_rad_s=values)

@@ -140,8 +140,9 @@ UNLIKE = 0.3  # of all turns measured: what one of these scales may leave
 SCALE_OFF = 0.03  # by a rad turned: what is left open of its scale
 DRIFT_RAD_S = 0.005  # of its bias over a run
 SIGMAS = 3.0  # of what scatters
-LARGEST_BIAS_RAD_S = 0.1  # more would be a fault: such a one may turn by a whole turn unnoticed
-# Where close pairs determine neither, most turns of so many must agree but for counts.
+# Where close pairs determine neither, most turns of so many must agree but for counts; a bias as
+# large as this, of a fault, turns by half a turn unnoticed in longer gaps.
+LARGEST_BIAS_RAD_S = 0.1
 AGREES_FROM_RAD, LEAST_AGREEING, AGREEING = 0.6, 10, 0.8
 
 
@@ -165,8 +166,9 @@ def turns_by_gyroscope(
 ) -> tuple[FloatArray, FloatArray] | None:
     """Turns and bounds; None of a gyroscope that turns another way than measured yaws."""
     turn, gross, off, silent_s = gyroscope.between(stamps_s[:-1], stamps_s[1:])
-    known = _calibrated(gyroscope, pairs)
+    known, longest_s = _calibrated(gyroscope, pairs), np.inf
     if known is None:
+        longest_s = np.pi / LARGEST_BIAS_RAD_S
         here = (silent_s == 0) & (gross > AGREES_FROM_RAD)
         off_rad = wrap(np.diff(yaw_rad) - turn)[here]
         if len(off_rad) < LEAST_AGREEING or np.mean(np.abs(off_rad) < np.pi / 4) < AGREEING:
@@ -176,7 +178,7 @@ def turns_by_gyroscope(
         return None
     lasts_s = np.diff(stamps_s)
     bound = known.pose_rad + off + known.scale_off * gross + known.bias_off_rad_s * lasts_s
-    unknown = (silent_s > 0) | (lasts_s * LARGEST_BIAS_RAD_S > np.pi)
+    unknown = (silent_s > 0) | (lasts_s > longest_s)
     return turn - known.bias_rad_s * lasts_s, np.where(unknown, np.inf, bound)
 
 

@@ -53,9 +53,10 @@ def test_without_a_gyroscope_there_is_no_yaw_rate(make_run):
 
 
 def test_the_gyroscope_of_odometry_without_what_was_not_measured(make_run):
-    stamps_s, rates, file = Run.read(make_run(odometry=ODOMETRY)).yaw_rate
+    stamps_s, rates, file, odometry_s = Run.read(make_run(odometry=ODOMETRY)).yaw_rate
     assert file == "odometry.csv"
     assert (stamps_s.tolist(), rates.tolist()) == ([0.0, 0.2], [0.1, 0.3])
+    assert odometry_s.tolist() == [0.0, 0.1, 0.2]
 
 
 def test_that_of_imu_csv_goes_first(make_run):
@@ -94,6 +95,15 @@ def test_a_slow_log_is_not_silent_from_row_to_row(period_s, seed):
     jitter_s = np.random.default_rng(seed).normal(0, 0.01, 100)
     stamps_s = np.sort(period_s * np.arange(100) + jitter_s)
     lost = np.delete(stamps_s, [50, 51])
-    gyroscope = gyroscope_of(YawRate(lost, np.full(98, 0.2), "imu.csv"))
+    gyroscope = gyroscope_of(YawRate(lost, np.full(98, 0.2), "imu.csv", stamps_s))
     _, _, _, silent_s = gyroscope.between(stamps_s[:-1], stamps_s[1:])
     assert np.flatnonzero(silent_s).tolist() == [49, 50, 51]
+
+
+def test_a_slow_gyroscope_beside_faster_treads_is_silent_between_its_samples():
+    slow_s, rates = 2.0 * np.arange(10), np.full(10, 0.2)
+    for period_s, is_silent in ((0.05, True), (0.5, True), (1.0, False), (6.0, False)):
+        odometry_s = np.arange(0.0, 18.1, period_s)
+        yaw_rate = YawRate(slow_s, rates, "imu.csv", odometry_s)
+        silent_s = gyroscope_of(yaw_rate).between(slow_s[:-1], slow_s[1:])[3]
+        assert (silent_s > 0).tolist() == [is_silent] * 9

@@ -74,6 +74,15 @@ def test_over_a_long_gap_of_poses_a_bias_cannot_make_a_count_wrong(bias_rad_s):
     assert unknown > 0
 
 
+@pytest.mark.parametrize("bias_rad_s", [0.02, -0.3])
+def test_a_gyroscope_whose_bias_is_known_counts_over_a_long_gap_of_poses(bias_rad_s):
+    run, true_yaw = turning_run(1, 10, 0.0, bias_rad_s=bias_rad_s, fastest_rad_s=1.0)
+    kept = (run.pose.stamps_s < 40.0) | (run.pose.stamps_s > 75.0)
+    pose = replace(run.pose, columns={name: c[kept] for name, c in run.pose.columns.items()})
+    wrong, unknown, *_ = counted(replace(run, pose=pose), true_yaw[kept])
+    assert (wrong, unknown) == (0, 0)
+
+
 @pytest.mark.parametrize(
     "change",
     [
