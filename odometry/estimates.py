@@ -142,9 +142,10 @@ class Replay:
 
     @property
     def gyroscope_share(self) -> float:
-        """Share of the time in which a gyroscope measured a yaw rate."""
+        """Share of the time in which a gyroscope measured a yaw rate; 0 of a single estimate."""
         lasts_s = np.diff(self.stamps_s)
-        return float(np.sum(lasts_s[np.isfinite(self.yaw_rates_rad_s)]) / np.sum(lasts_s))
+        measured_s = np.sum(lasts_s[np.isfinite(self.yaw_rates_rad_s)])
+        return float(measured_s / np.sum(lasts_s)) if len(lasts_s) else 0.0
 
     @property
     def used_gyroscope(self) -> bool:

@@ -34,9 +34,10 @@ def without_gyroscope_row(replay: Replay) -> list[str]:
             "The run has no gyroscope: there is no gyroscope row, and the odometer is turned by "
             "the treads."
         ]
+    percent = int(100 * share)  # below MOST in words as well
     return [
-        f"The gyroscope measured for {100 * share:.0f} % of the time: there is no gyroscope row, "
-        "and elsewhere the odometer is turned by the treads."
+        f"The gyroscope measured for {percent or 'less than 1'} % of the time: elsewhere the "
+        "odometer is turned by the treads, and there is no gyroscope row."
     ]
 
 

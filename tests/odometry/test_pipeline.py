@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
+from odometry.estimates import Replay
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay
@@ -213,3 +214,9 @@ def test_a_path_by_the_gyroscope_needs_one_that_measured_most_of_the_time(
     result = replayed(Run.read(folder))
     assert result.gyroscope_share == pytest.approx(measured, abs=0.03)
     assert ("gyroscope" in result.open_loop(0.6)) == has_row
+
+
+def test_of_a_single_estimate_no_share_was_measured(make_run):
+    folder = make_run(odometry="t,v_left,v_right,gyro_z\n0,0.5,0.6,0.1\n1,0.5,0.6,0.1\n")
+    first = next(iter(replayed(Run.read(folder)).estimates))
+    assert Replay([first]).gyroscope_share == 0.0

@@ -89,7 +89,13 @@ def test_what_of_the_errors_is_the_scatter_of_the_poses_is_said(rng):
 
 
 @pytest.mark.parametrize(
-    ("share", "words"), [(0.0, "no gyroscope"), (0.324, "measured for 32 % of the time")]
+    ("share", "words"),
+    [
+        (0.0, "no gyroscope"),
+        (0.0004, "measured for less than 1 % of the time"),
+        (0.324, "measured for 32 % of the time"),
+        (0.8999, "measured for 89 % of the time"),
+    ],
 )
 def test_why_there_is_no_gyroscope_row_is_said(share, words):
     (note,) = without_gyroscope_row(SimpleNamespace(gyroscope_share=share))
