@@ -121,6 +121,7 @@ def _triple(
 # Between two samples the turn is not known after both. A slow log is not silent from row to row;
 # beside faster treads, which say how the robot turns meanwhile, a slow gyroscope is.
 SILENT_S, SILENT_PERIODS = 0.5, 2.5
+QUARTERS = np.arange(4) / 4
 
 
 @dataclass(frozen=True)
@@ -168,7 +169,22 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     every = _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s, silent_s)
     for of, steps in zip(integrals, every, strict=True):
         np.cumsum(steps, out=of[1:])
-    return Gyroscope(yaw_rate.stamps_s, integrals.T)
+    whole = Gyroscope(yaw_rate.stamps_s, integrals.T)
+    return whole if silent_s <= SILENT_S else _in_quarters(whole, yaw_rate.yaw_rate_rad_s)
+
+
+def _in_quarters(gyroscope: Gyroscope, rates_rad_s: FloatArray) -> Gyroscope:
+    """The same turns, between samples (G,) as well by rates that change evenly.
+
+    By the mean rate a slow gyroscope would seem to hold one value from sample to sample.
+    """
+    before, steps_s = gyroscope.stamps_s[:-1, None], np.diff(gyroscope.stamps_s)[:, None]
+    stamps_s = np.append((before + steps_s * QUARTERS).ravel(), gyroscope.stamps_s[-1])
+    turn, *others = gyroscope.integrals.T
+    bow = np.diff(rates_rad_s)[:, None] / 2 * steps_s * (QUARTERS**2 - QUARTERS)
+    columns = [np.interp(stamps_s, gyroscope.stamps_s, each) for each in (turn, *others)]
+    columns[0] += np.append(bow.ravel(), 0.0)
+    return Gyroscope(stamps_s, np.column_stack(columns))
 
 
 def _period_s(stamps_s: FloatArray) -> float:

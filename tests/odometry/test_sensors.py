@@ -107,3 +107,16 @@ def test_a_slow_gyroscope_beside_faster_treads_is_silent_between_its_samples():
         yaw_rate = YawRate(slow_s, rates, "imu.csv", odometry_s)
         silent_s = gyroscope_of(yaw_rate).between(slow_s[:-1], slow_s[1:])[3]
         assert (silent_s > 0).tolist() == [is_silent] * 9
+
+
+def test_between_slow_samples_the_rate_changes_evenly():
+    """Held at its mean from sample to sample, it would seem to repeat one value."""
+    rates = np.array([0.0, 1.0, 3.0, 2.0])
+    gyroscope = gyroscope_of(YawRate(np.arange(4.0), rates, "imu.csv", np.arange(4.0)))
+    turn, gross, off, silent_s = gyroscope.between(np.array([0, 0, 1, 0]), np.array([0.5, 1, 2, 3]))
+    np.testing.assert_allclose(turn, [0.125, 0.5, 2.0, 5.0])
+    np.testing.assert_allclose(gross, [0.25, 0.5, 2.0, 5.0])
+    np.testing.assert_allclose(off, [0.25, 0.5, 1.0, 2.0])
+    assert not silent_s.any()
+    steps = gyroscope.mean_rates_rad_s(np.arange(0.0, 3.01, 0.25))[1:]
+    assert np.abs(np.diff(steps)).min() > 0.05
