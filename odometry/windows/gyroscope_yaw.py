@@ -80,8 +80,9 @@ class PathShape:
         length times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each
         piece has a share and lengths of its own.
         """
+        per_speed = _per_speed(rates_rad_s, self._steps_s)
         paths = [
-            _path(moved, rates_rad_s, self._steps_s)[self._samples]
+            np.append(0.0, np.cumsum(moved * per_speed)[:-1])[self._samples]
             for moved in (speeds_m_s, rates_rad_s)
         ]
         found = []
@@ -106,12 +107,12 @@ def _distances(
     return np.abs(measured)
 
 
-def _path(moved: FloatArray, rates: FloatArray, steps_s: FloatArray) -> ComplexArray:
-    """Places (N,) in the complex plane of a body that moves ahead at rates (N,) and turns."""
-    twists = np.column_stack([moved, np.zeros_like(moved), rates])
+def _per_speed(rates: FloatArray, steps_s: FloatArray) -> ComplexArray:
+    """Steps (N,) in the complex plane of a body that moves ahead at 1 and turns at rates (N,)."""
+    twists = np.column_stack([np.ones_like(rates), np.zeros_like(rates), rates])
     along, across, turn = se2.exp(twists * steps_s[:, None]).T
     yaw = np.cumsum(turn) - turn
-    return np.asarray(np.append(0.0, np.cumsum((along + 1j * across) * np.exp(1j * yaw))[:-1]))
+    return np.asarray((along + 1j * across) * np.exp(1j * yaw))
 
 
 def _centred(places: ComplexArray, piece: IntArray) -> ComplexArray:
