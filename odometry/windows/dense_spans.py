@@ -12,6 +12,7 @@ EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometr
 UNEVEN = 0.25  # a window may be longer or shorter by this share
 FEW = 0.1  # share of the windows that may be lost for having fewer poses than the others
 STILL = 0.05  # of the farthest way in a window: less is a robot that stands
+LEAST_MOVING = 40  # windows: twice what a noise floor needs
 
 
 def windows_of_poses(
@@ -20,7 +21,7 @@ def windows_of_poses(
     """Poses (K, n + 1) of windows, and how many were left out.
 
     n is what about nine windows in ten have, evenly chosen where there are more. Where the robot
-    stands in most of them, these are left out.
+    stands in most of them, these are left out, if enough others are there.
     """
     inside = (pose_s >= EDGE_S) & (pose_s <= end_s - EDGE_S)
     spans, stretch = [], record.stretch
@@ -35,7 +36,7 @@ def windows_of_poses(
     kept = lasts - firsts >= steps
     left_out[FEW_POSES] += int(np.count_nonzero(~kept))
     still = kept & _still(record, firsts, lasts)
-    if 2 * still.sum() > kept.sum() > still.sum():
+    if 2 * still.sum() > kept.sum() >= still.sum() + LEAST_MOVING:
         kept &= ~still  # their errors, all but nothing, would be what is usual
         left_out[STATIONARY] += int(still.sum())
     chosen = np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1))

@@ -143,23 +143,23 @@ def test_pieces_of_several_runs_have_numbers_of_their_own(make_scene):
     assert len(set(zip(found, pairs, strict=True))) == len(set(pairs)) == len(set(found))
 
 
-@pytest.mark.parametrize(("rest_s", "are_left_out"), [(30.0, False), (300.0, True)])
-def test_windows_of_a_robot_that_mostly_stands_are_those_in_which_it_moves(
-    run, rest_s, are_left_out
+@pytest.mark.parametrize(
+    ("horizon_s", "rest_s", "are_left_out"),
+    [(1.0, 30.0, False), (1.0, 300.0, True), (2.0, 300.0, False)],
+)
+def test_windows_of_a_robot_that_mostly_stands_are_those_in_which_it_moves_if_there_are_enough(
+    run, horizon_s, rest_s, are_left_out
 ):
-    driven = dense_windows_of(run, 2.0)
-    end_s = run.odometry.stamps_s[-1]
-    later_s = end_s + np.arange(0.05, rest_s, 0.05)
+    driven = dense_windows_of(run, horizon_s)
+    later_s = run.odometry.stamps_s[-1] + np.arange(0.05, rest_s, 0.05)
     treads = dict.fromkeys(("v_left", "v_right"), np.zeros(len(later_s)))
     odometry = extended(run.odometry, t=later_s, **treads)
     last = {name: run.pose[name][-1] for name in ("x", "y", "yaw")}
-    poses = extended(run.pose, t=later_s[::2], **last)
-    rested = dense_windows_of(replace(run, odometry=odometry, pose=poses), 2.0)
+    poses = extended(run.pose, t=later_s[::4], **last)
+    rested = dense_windows_of(replace(run, odometry=odometry, pose=poses), horizon_s)
     assert (rested.left_out["treads stationary"] > 0) == are_left_out
-    if are_left_out:
-        assert abs(len(rested.windows) - len(driven.windows)) <= 2
-    else:
-        assert len(rested.windows) > len(driven.windows) + 10
+    more = len(rested.windows) - len(driven.windows)
+    assert more == pytest.approx(0 if are_left_out else rest_s / horizon_s, abs=2)
 
 
 def extended(table, t, **added):
