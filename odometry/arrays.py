@@ -34,3 +34,8 @@ def median(values: FloatArray) -> float:
     if odd:
         return float(np.partition(values, half)[half])
     return float(np.partition(values, (half - 1, half))[half - 1 : half + 1].sum()) / 2
+
+
+def usual_period_s(stamps_s: FloatArray) -> float:
+    """Median time between stamps (N,); 0 of fewer than two."""
+    return float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0

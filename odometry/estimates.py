@@ -164,7 +164,7 @@ class Replay:
         """What computes each of them: all of a long run's do not fit in memory."""
         found: dict[str, Callable[[], Trajectory]]
         found = {"differential_drive": partial(self.differential_drive, track_width)}
-        if self.has_gyroscope and self.gyroscope_share >= MOST:
+        if self.gyroscope_share >= MOST:
             found["gyroscope"] = partial(self.gyroscope, track_width)
         if self.used_gyroscope:
             found["odometer_without_gyroscope"] = self.odometer_without_gyroscope

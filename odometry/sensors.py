@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, usual_period_s
 from odometry.errors import RunFolderError
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.table import Table
@@ -164,7 +164,7 @@ def gyroscope_of(yaw_rate: YawRate | None) -> Gyroscope | None:
     if yaw_rate is None or len(yaw_rate.stamps_s) < 2:
         return None
     integrals = np.zeros((4, len(yaw_rate.stamps_s)))
-    period_s = min(_period_s(yaw_rate.stamps_s), _period_s(yaw_rate.odometry_s))
+    period_s = min(usual_period_s(yaw_rate.stamps_s), usual_period_s(yaw_rate.odometry_s))
     silent_s = max(SILENT_S, SILENT_PERIODS * period_s)
     every = _steps(yaw_rate.stamps_s, yaw_rate.yaw_rate_rad_s, silent_s)
     for of, steps in zip(integrals, every, strict=True):
@@ -185,11 +185,6 @@ def _in_quarters(gyroscope: Gyroscope, rates_rad_s: FloatArray) -> Gyroscope:
     columns = [np.interp(stamps_s, gyroscope.stamps_s, each) for each in (turn, *others)]
     columns[0] += np.append(bow.ravel(), 0.0)
     return Gyroscope(stamps_s, np.column_stack(columns))
-
-
-def _period_s(stamps_s: FloatArray) -> float:
-    """Usual time between stamps (N,); 0 of fewer than two."""
-    return float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
 
 
 def step_integrals(stamps_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:

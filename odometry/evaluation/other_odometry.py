@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import BoolArray, FloatArray, IntArray, usual_period_s
 from odometry.errors import TrajectoryError
 from odometry.evaluation.relative import (
     EvaluationConfig,
@@ -90,7 +90,7 @@ def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
     """
     share = float(trajectory.covers(judge.reference.stamps_s).mean())
     own = _is_sparse(trajectory, judge.reference)
-    longest_s = max(LONGEST_GAP_S, LOST * _period_s(trajectory)) if own else np.inf
+    longest_s = max(LONGEST_GAP_S, LOST * usual_period_s(trajectory.stamps_s)) if own else np.inf
     judge = _at_own_stamps(trajectory, judge) if own else judge
     stamps_s = judge.reference.stamps_s
     held = held_stamps(trajectory, stamps_s) & judge.believed.covers(stamps_s)
@@ -118,12 +118,9 @@ def score_other(trajectory: Trajectory, judge: Judge) -> OtherScore:
 def _is_sparse(trajectory: Trajectory, reference: Trajectory) -> bool:
     """Whether poses come less than half as often as those of a reference that holds some."""
     within = int(held_stamps(reference, trajectory.stamps_s).sum())
-    return within > 1 and _period_s(trajectory) > SPARSE * _period_s(reference)
-
-
-def _period_s(trajectory: Trajectory) -> float:
-    stamps_s = trajectory.stamps_s
-    return float(np.median(np.diff(stamps_s))) if len(stamps_s) > 1 else 0.0
+    return within > 1 and usual_period_s(trajectory.stamps_s) > SPARSE * usual_period_s(
+        reference.stamps_s
+    )
 
 
 def _at_own_stamps(trajectory: Trajectory, judge: Judge) -> Judge:

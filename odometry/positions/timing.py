@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t
 
-from odometry.arrays import FloatArray
+from odometry.arrays import FloatArray, usual_period_s
 from odometry.errors import OdometryError
 from odometry.run import Run
 from odometry.table import Table
@@ -163,7 +163,7 @@ class _Compared:
 
 def _period_s(record: Record) -> float:
     rates = record.run.yaw_rate
-    return 0.0 if rates is None else float(np.median(np.diff(rates.stamps_s)))
+    return 0.0 if rates is None else usual_period_s(rates.stamps_s)
 
 
 def _delayed(record: Record, rates: FloatArray, late_s: float) -> FloatArray:

@@ -4,14 +4,14 @@ from collections import Counter
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import FloatArray, IntArray
+from odometry.windows.in_motion import moving_windows
 from odometry.windows.record import FEW_POSES, STATIONARY, Record, straddling
 
 LEAST_POSES = 3  # of a window
 EDGE_S = 0.5  # of a run: a late or early pose must still lie within its odometry
 UNEVEN = 0.25  # a window may be longer or shorter by this share
 FEW = 0.1  # share of the windows that may be lost for having fewer poses than the others
-STILL = 0.05  # of the farthest way in a window: less is a robot that stands
 LEAST_MOVING = 40  # windows: twice what a noise floor needs
 
 
@@ -35,20 +35,18 @@ def windows_of_poses(
     steps = max(LEAST_POSES - 1, int(np.quantile(lasts - firsts, FEW)))
     kept = lasts - firsts >= steps
     left_out[FEW_POSES] += int(np.count_nonzero(~kept))
-    still = kept & _still(record, firsts, lasts)
-    if 2 * still.sum() > kept.sum() >= still.sum() + LEAST_MOVING:
-        kept &= ~still  # their errors, all but nothing, would be what is usual
-        left_out[STATIONARY] += int(still.sum())
+    moves = moving_windows(_ways_m(record, firsts[kept], lasts[kept]), LEAST_MOVING)
+    left_out[STATIONARY] += int(np.count_nonzero(~moves))
+    kept[kept] = moves  # the errors of others, all but nothing, would be what is usual
     chosen = np.rint(np.linspace(firsts[kept], lasts[kept], steps + 1, axis=1))
     return chosen.astype(np.int64), +left_out
 
 
-def _still(record: Record, firsts: IntArray, lasts: IntArray) -> BoolArray:
-    """Windows (K,) between poses in which neither the treads nor the poses moved the robot far."""
+def _ways_m(record: Record, firsts: IntArray, lasts: IntArray) -> FloatArray:
+    """How far (2, K) poses and treads moved the robot between poses (K,)."""
     travel_m = record.travel_m[record.pose_samples]
     moved_m = np.hypot(*(record.poses[lasts, :2] - record.poses[firsts, :2]).T)
-    driven_m = travel_m[lasts] - travel_m[firsts]
-    return np.asarray(np.maximum(moved_m, driven_m) < STILL * np.quantile(driven_m, 0.99))
+    return np.stack([moved_m, travel_m[lasts] - travel_m[firsts]])
 
 
 def _spans(pose_s: FloatArray, poses: IntArray, horizon_s: float) -> list[tuple[int, int]]:

@@ -9,11 +9,11 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion_between
 from odometry.checks.evidence.scatter import scattered
-from odometry.checks.statistics.in_motion import moving_samples
 from odometry.checks.statistics.measured_between import gaps_between
 from odometry.checks.statistics.outliers import excursions, pose_outliers, without_spikes
 from odometry.run import Run
 from odometry.windows.gaps import odometry_gaps
+from odometry.windows.in_motion import moving_samples
 from odometry.windows.spans import touched
 
 LONGER_S = (1.0, 2.0)  # windows

@@ -62,8 +62,8 @@ def _by_path(late_s: float) -> Finding:
     return Finding(
         "pose_late",
         Level.WARNING,
-        f"positions are {abs(late_s):.2f} s {word}: the path of treads and gyroscope has their "
-        "shape where it is taken so much " + ("earlier" if late_s > 0 else "later"),
+        f"positions are {abs(late_s):.2f} s {word}: shifted by this time, the path of treads and "
+        "gyroscope fits their shape best",
         f"Stamps of pose.csv are {word} (a delay of the receiver or of its transport), or those of "
         f"odometry.csv and of the gyroscope are {opposite}",
         f"Subtract {late_s:+.2f} s from the stamps of the poses",

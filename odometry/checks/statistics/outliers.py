@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.checks.statistics.in_motion import moving_samples
+from odometry.windows.in_motion import moving_samples
 from odometry.windows.spans import runs_of
 
 NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)

@@ -21,13 +21,15 @@ def moving_samples(sizes: FloatArray) -> BoolArray:
     return np.asarray(lasting >= MOVING * np.quantile(lasting, 0.99))
 
 
-def moving_windows(columns: FloatArray) -> BoolArray:
+def moving_windows(columns: FloatArray, fewest: int = FEWEST) -> BoolArray:
     """Windows (K,) in which a column (P, K) is not nearly zero.
 
-    All of them where half of them are, as medians then are of such windows; or too few are.
+    All of them where half of them are, as medians then are of such windows; or fewer than `fewest`.
     """
     sizes = np.abs(columns)
+    if sizes.shape[1] < fewest:
+        return np.ones(sizes.shape[1], dtype=np.bool_)
     large = np.quantile(sizes, 0.99, axis=1, keepdims=True)
     moves = np.asarray((sizes > SAYS * large).any(axis=0))
-    few = FEWEST <= moves.sum() < len(moves) / 2
+    few = fewest <= moves.sum() < len(moves) / 2
     return moves if few else np.ones_like(moves)
