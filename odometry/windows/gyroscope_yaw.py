@@ -1,12 +1,12 @@
 """The yaw rate of a gyroscope less its bias, which positions determine."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.geometry import se2
 from odometry.sensors import gyroscope_of
 from odometry.windows.record import Record
 
@@ -58,8 +58,7 @@ class PathShape:
         self._steps_s = np.append(np.diff(record.stamps_s), 0.0)
         travel_m = record.travel_m[record.pose_samples]
         self._pieces = [
-            np.unique(np.floor(travel_m / each) + 1e6 * record.stretch, return_inverse=True)[1]
-            for each in lengths_m
+            _Pieces.of(np.floor(travel_m / each) + 1e6 * record.stretch) for each in lengths_m
         ]
         self._measured = [_centred(places, piece) for piece in self._pieces]
 
@@ -86,39 +85,50 @@ class PathShape:
             for moved in (speeds_m_s, rates_rad_s)
         ]
         found = []
-        for measured, piece in zip(self._measured, self._pieces, strict=True):
-            sums = np.bincount(piece, _distances(measured, paths, piece)).astype(np.float64)
-            found.append((sums, np.bincount(piece)))
+        for measured, pieces in zip(self._measured, self._pieces, strict=True):
+            sums = np.add.reduceat(_distances(measured, paths, pieces), pieces.starts)
+            found.append((sums, pieces.counts))
         return found
 
 
+class _Pieces(NamedTuple):
+    """First place (P,) of each piece of path, and how many places it has."""
+
+    starts: IntArray
+    counts: IntArray
+
+    @classmethod
+    def of(cls, numbers: FloatArray) -> "_Pieces":
+        """Of the number (M,) of the piece in which each place lies, none below that before."""
+        starts = np.flatnonzero(np.diff(numbers, prepend=-1.0))
+        return cls(starts, np.diff(starts, append=len(numbers)))
+
+
 def _distances(
-    measured: ComplexArray, paths: Sequence[ComplexArray], piece: IntArray
+    measured: ComplexArray, paths: Sequence[ComplexArray], pieces: _Pieces
 ) -> FloatArray:
     """Between measured places (M,) and those of two paths, fitted to each piece."""
-    forward, turning = (_centred(path, piece) for path in paths)
-    own = _summed(np.abs(forward) ** 2, piece).real
-    share = _summed(np.conj(forward) * turning, piece) / np.maximum(own, TINY)
-    turning = turning - share[piece] * forward  # what is not along the other
+    forward, turning = (_centred(path, pieces) for path in paths)
+    turning = turning - _along(forward, turning, pieces)
     for part in (forward, turning):
-        own = _summed(np.abs(part) ** 2, piece).real
-        factor = _summed(np.conj(part) * measured, piece) / np.maximum(own, TINY)
-        measured = measured - factor[piece] * part
+        measured = measured - _along(part, measured, pieces)
     return np.abs(measured)
+
+
+def _along(path: ComplexArray, other: ComplexArray, pieces: _Pieces) -> ComplexArray:
+    """Another path (M,) as far as it goes along one: turned and scaled by each piece."""
+    own = np.add.reduceat(path.real**2 + path.imag**2, pieces.starts)
+    factor = np.add.reduceat(np.conj(path) * other, pieces.starts) / np.maximum(own, TINY)
+    return np.asarray(np.repeat(factor, pieces.counts) * path)
 
 
 def _per_speed(rates: FloatArray, steps_s: FloatArray) -> ComplexArray:
     """Steps (N,) in the complex plane of a body that moves ahead at 1 and turns at rates (N,)."""
-    twists = np.column_stack([np.ones_like(rates), np.zeros_like(rates), rates])
-    along, across, turn = se2.exp(twists * steps_s[:, None]).T
-    yaw = np.cumsum(turn) - turn
-    return np.asarray((along + 1j * across) * np.exp(1j * yaw))
+    half = rates * steps_s / 2
+    yaw = 2 * np.cumsum(half) - half  # midway: a chord of an arc
+    return np.asarray(steps_s * np.sinc(half / np.pi) * np.exp(1j * yaw))
 
 
-def _centred(places: ComplexArray, piece: IntArray) -> ComplexArray:
-    return np.asarray(places - (_summed(places, piece) / np.bincount(piece))[piece])
-
-
-def _summed(places: ComplexArray, piece: IntArray) -> ComplexArray:
-    """Sums of places (M,) in the complex plane over each piece."""
-    return np.asarray(np.bincount(piece, places.real) + 1j * np.bincount(piece, places.imag))
+def _centred(places: ComplexArray, pieces: _Pieces) -> ComplexArray:
+    sums = np.add.reduceat(places, pieces.starts)
+    return np.asarray(places - np.repeat(sums / pieces.counts, pieces.counts))

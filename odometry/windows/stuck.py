@@ -30,15 +30,15 @@ def stuck_poses(record: Record) -> BoolArray:
     treads have led ahead and turned since. A yaw that is not measured says nothing.
     """
     found = np.zeros(len(record.poses), dtype=np.bool_)
-    led_times = _led(record)
+    led_times, pose_s = _led(record), record.pose_s
     ends = np.append(np.flatnonzero(record.breaks != ""), len(found) - 1) + 1
     begin, poses = 0, record.poses.tolist()
     for end in ends.tolist():
         while begin < end:
             after = _first_away(poses, begin, end)
-            if record.pose_s[after - 1] - record.pose_s[begin] >= LEAST_S:
+            if pose_s[after - 1] - pose_s[begin] >= LEAST_S:
                 stay = slice(begin, after)
-                found[stay] = _is_led_away(led_times[stay], record.pose_s[stay])
+                found[stay] = _is_led_away(led_times[stay], pose_s[stay])
             begin = after
     return found
 
