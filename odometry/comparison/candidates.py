@@ -151,7 +151,11 @@ class IdentifiedModel(Candidate):
             f"identified by terrain-odometry from {len(windows)} {fit.noun} of "
             f"{split.training_names}",
             tuple(open_.words() for open_ in fit.undetermined),
-            tuple(f"{name} ended at the edge of its search range" for name in fit.at_bound),
+            tuple(
+                f"{name} ended at the edge of its search range"
+                for name in fit.at_bound
+                if name not in fit.open_names
+            ),
             refusals(fit),
         )
 

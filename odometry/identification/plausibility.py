@@ -165,6 +165,7 @@ def notes(fit: Fit) -> tuple[str, ...]:
             else ""
         )
         for name in fit.at_bound
+        if name not in fit.open_names
     ]
     if fit.agreeing == 1 < fit.starts:
         found.append("no two starts agree; the minimum may not be the least")

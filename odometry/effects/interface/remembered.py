@@ -1,12 +1,13 @@
 """Answers that an effect gave to the same numbers before."""
 
 from collections.abc import Callable, Sequence
+from hashlib import blake2b
 
 import numpy as np
 
 from odometry.arrays import FloatArray
 
-MOST = 64  # answers
+MOST, MOST_BYTES = 64, 16_000_000  # answers: those of an hour at 20 Hz have 2 MB each
 
 
 class Remembered:
@@ -17,9 +18,14 @@ class Remembered:
 
     def to(self, asked: Sequence[FloatArray], answer: Callable[[], FloatArray]) -> FloatArray:
         """What was answered to the same arrays, or the answer now."""
-        key = b"".join(np.ascontiguousarray(of).tobytes() for of in asked)
+        digest = blake2b(digest_size=32)
+        for of in asked:
+            digest.update(np.ascontiguousarray(of).data)
+        key = digest.digest()
         if key not in self._answers:
-            while len(self._answers) >= MOST:
+            now = answer()
+            room = min(MOST, max(1, MOST_BYTES // max(now.nbytes, 1)))
+            while len(self._answers) >= room:
                 self._answers.pop(next(iter(self._answers)))
-            self._answers[key] = answer()
+            self._answers[key] = now
         return self._answers[key]

@@ -22,6 +22,7 @@ from odometry.windows.dense import DenseWindows, motion_from_first
 from odometry.windows.motion import linearised_level_path
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
+MOST_SAMPLES = 1_000_000  # of changes at once: some ten arrays of their size are in memory then
 
 
 class Responses:
@@ -64,6 +65,15 @@ class Responses:
 
     def of(self, changes: FloatArray) -> FloatArray:
         """Derivative (C, K, R) of residuals by the size of changes (C, N, 3) of the twist."""
+        rows = np.empty((len(changes), len(self._scene), self._scene.rows_per_window))
+        together = max(1, MOST_SAMPLES // changes.shape[1])
+        for begin in range(0, len(changes), together):
+            some = slice(begin, begin + together)
+            self._of_some(changes[some], rows[some])
+        return rows
+
+    def _of_some(self, changes: FloatArray, rows: FloatArray) -> None:
+        """Put the derivative by some changes (C, N, 3) into rows (C, K, R)."""
         v_x, v_y, omega = np.ascontiguousarray(np.moveaxis(changes, -1, 0))
         x_by, y_by, yaw_by = self._by_twist[:3], self._by_twist[3:6], self._by_twist[6]
         x, y, _ = self.path.T
@@ -74,12 +84,10 @@ class Responses:
             _sum(by[0] * v_x + by[1] * v_y + by[2] * omega, moved[place])
             moved[place] += swung * turned
         steps = self._scene.windows.shape[1] - 1
-        rows = np.empty((len(omega), len(self._scene), self._scene.rows_per_window))
         self._off_first(self._seen.of(moved), rows[..., : 3 * steps])
         if self._scene.reported_turns is not None:
             reported = self._delayed.of(_sum(omega * self._by_rate, np.empty_like(omega)))
             np.subtract(reported[..., :-1], reported[..., 1:], out=rows[..., 3 * steps :])
-        return rows
 
     def _off_first(self, moved: FloatArray, rows: FloatArray) -> None:
         """Change of residuals into rows (C, K, 3 n), of changes (3, C, K, n + 1) of all poses."""

@@ -10,6 +10,7 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.gyroscope_error import GyroscopeError
 from odometry.effects.measurement.sensor_mount import LeverArm
 from odometry.effects.unknown.residual import COMPONENTS, Residual
+from odometry.gap.prepare import responses
 from odometry.gap.prepare.responses import columns_of, simulated_scenes
 from odometry.gap.prepare.simulate import whitened_residuals
 from odometry.windows.averaged import averaged_windows
@@ -42,3 +43,24 @@ def test_they_are_the_derivatives_of_whitened_residuals(make_scene, known, gyros
     expected = [(rows(STEP * axis) - rows(nothing)) / STEP for axis in np.eye(len(TERMS))]
     found = columns_of(residual, simulated_scenes(base, effects, [scene]), [white])
     np.testing.assert_allclose(found.T, expected, atol=2e-4 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("samples", [1, 2500])
+def test_a_few_columns_at_a_time_are_the_same(make_scene, known, monkeypatch, samples):
+    """A long run is answered column by column, so that memory stays bounded."""
+    scene = make_scene(11, lambda _, twist: twist, duration_s=40.0)
+    white, residual = whitening(scene, known.noise), Residual("heading", TERMS, "speed")
+    simulated = simulated_scenes(known.base, SENSORS, [scene])
+    together = columns_of(residual, simulated, [white])
+    sizes = []
+    of_some = responses.Responses._of_some
+
+    def watched(self, changes, rows):
+        sizes.append(len(changes))
+        of_some(self, changes, rows)
+
+    monkeypatch.setattr(responses.Responses, "_of_some", watched)
+    monkeypatch.setattr(responses, "MOST_SAMPLES", samples)
+    np.testing.assert_array_equal(columns_of(residual, simulated, [white]), together)
+    assert sum(sizes) == len(TERMS)
+    assert max(sizes) == max(1, samples // len(scene.time_s))

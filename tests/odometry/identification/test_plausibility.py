@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import IdentificationError
+from odometry.identification.fitted import Undetermined
 from odometry.identification.identify import identify
 from odometry.identification.plausibility import notes, refusals
 from odometry.identification.start import SolverConfig
@@ -78,6 +79,8 @@ def test_at_its_bound_with_residuals_as_the_noise_explains_is_noted(synthetic, t
     (ground,) = found.terrains.values()
     assert ground.fit.at_bound == ("alpha_left",)
     assert any("alpha_left ended at the edge" in words for words in notes(ground.fit))
+    open_ = (Undetermined({"alpha_left": 1.0}, np.inf),)
+    assert not any("edge" in words for words in notes(replace(ground.fit, undetermined=open_)))
 
 
 def test_a_bound_without_effect_is_an_answer(winding):
