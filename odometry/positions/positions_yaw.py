@@ -109,10 +109,8 @@ def _disagreement(carrier: Carrier, of: Filtered, best: int, last_yaw_rad: float
     back = _way(carrier, np.repeat(carrier.steps[:1], STARTS, axis=0)).backwards()
     backwards = filtered(back, last_yaw_rad + np.arange(STARTS) * 2 * np.pi / STARTS)
     other = int(np.argmax(backwards.log_likelihoods))
-    before, after = of.posterior[:, best, 2], backwards.posterior[::-1, other, 2]
-    variances = np.stack(
-        [of.posterior_of[:, best, 2, 2], backwards.posterior_of[::-1, other, 2, 2]]
-    )
+    before, after = of.states[:, best, 2], backwards.states[::-1, other, 2]
+    variances = np.stack([of.covariances[:, best, 2, 2], backwards.covariances[::-1, other, 2, 2]])
     sure = (variances < SURE_RAD**2).all(axis=0)
     if not sure.any():
         return np.nan

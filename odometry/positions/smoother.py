@@ -47,17 +47,15 @@ class Way(NamedTuple):
 
 
 class Filtered(NamedTuple):
-    """States (M, H, 5) and covariances (M, H, 5, 5) before and after each position.
+    """States (M, H, 5) and covariances (M, H, 5, 5) after each position of a way.
 
-    `moves` (M, H, 5, 5) are the transitions to each; `log_likelihoods` are (H,), and `surprise`
-    (H,) the mean of the squared Mahalanobis distances by their expected value.
+    `log_likelihoods` are (H,), and `surprise` (H,) the mean of the squared Mahalanobis distances
+    by their expected value.
     """
 
-    prior: FloatArray
-    prior_of: FloatArray
-    posterior: FloatArray
-    posterior_of: FloatArray
-    moves: FloatArray
+    way: Way
+    states: FloatArray
+    covariances: FloatArray
     log_likelihoods: FloatArray
     surprise: FloatArray
 
@@ -75,44 +73,58 @@ def filtered(way: Way, first_yaws_rad: FloatArray) -> Filtered:
     A position that lies far from where it should is weighed down by its distance.
     """
     count, size, variance = len(way.positions), len(first_yaws_rad), way.position_variance_m2
-    prior, posterior = np.zeros((2, count, size, STATES))
-    prior_of, posterior_of = np.zeros((2, count, size, STATES, STATES))
-    moves = np.tile(np.eye(STATES), (count, size, 1, 1))
-    moves[1:, :, 2, 3:] = -way.drifts[:, None]
-    prior[0, :, :2], prior[0, :, 2] = way.positions[0], first_yaws_rad
-    prior_of[0] = np.diag([variance, variance, FIRST_YAW_RAD**2, *np.square(way.drift_sigmas)])
-    posterior[0], posterior_of[0] = prior[0], prior_of[0]
+    states, covariances = np.zeros((count, size, STATES)), np.zeros((count, size, STATES, STATES))
+    states[0, :, :2], states[0, :, 2] = way.positions[0], first_yaws_rad
+    covariances[0] = np.diag([variance, variance, FIRST_YAW_RAD**2, *np.square(way.drift_sigmas)])
     log_likelihoods, surprise = np.zeros((2, size))
-    added = np.pad(way.step_variances, ((0, 0), (0, 2))) + way.gaps[:, None] * ACROSS_GAP
     for i in range(1, count):
-        before = posterior[i - 1]
-        prior[i] = _moved(before, way.steps[:, i - 1], way.drifts[i - 1])
-        moves[i, :, 0, 2] = before[:, 1] - prior[i, :, 1]
-        moves[i, :, 1, 2] = prior[i, :, 0] - before[:, 0]
-        turned = moves[i] @ posterior_of[i - 1] @ moves[i].swapaxes(1, 2)
-        prior_of[i] = turned + np.diag(added[i - 1])
-        off = way.positions[i] - prior[i, :, :2]
-        spread = prior_of[i, :, :2, :2] + variance * np.eye(2)
+        prior = _predicted(way, i, states[i - 1], covariances[i - 1])
+        off = way.positions[i] - prior.states[:, :2]
+        spread = prior.covariances[:, :2, :2] + variance * np.eye(2)
         distance = np.einsum("hi,hij,hj->h", off, np.linalg.inv(spread), off)
         surprise += distance / 2 / (count - 1)
         lost = np.where(distance > FAR, 2 * np.sqrt(FAR * distance) - FAR, distance)
         log_likelihoods -= (lost + np.log(np.linalg.det(spread))) / 2
         weighed = variance * np.maximum(1.0, np.sqrt(distance / FAR))  # the same pull however far
-        posterior[i], posterior_of[i] = _updated(prior[i], prior_of[i], off, weighed)
-    return Filtered(prior, prior_of, posterior, posterior_of, moves, log_likelihoods, surprise)
+        states[i], covariances[i] = _updated(prior, off, weighed)
+    return Filtered(way, states, covariances, log_likelihoods, surprise)
 
 
 def smoothed(of: Filtered) -> Smoothed:
-    """The likeliest poses at all positions, given all of these."""
-    states, covariances = of.posterior.copy(), of.posterior_of.copy()
+    """The likeliest poses at all positions, given all of these.
+
+    What was predicted is predicted again: kept for each position it would take twice the memory.
+    """
+    states, after = of.states.copy(), of.covariances[-1]
+    covariances = of.covariances[..., :3, :3].copy()
     for i in range(len(states) - 2, -1, -1):
-        gain = (
-            of.posterior_of[i] @ of.moves[i + 1].swapaxes(1, 2) @ np.linalg.inv(of.prior_of[i + 1])
-        )
-        states[i] += np.einsum("hij,hj->hi", gain, states[i + 1] - of.prior[i + 1])
-        change = covariances[i + 1] - of.prior_of[i + 1]
-        covariances[i] += gain @ change @ gain.swapaxes(1, 2)
-    return Smoothed(states[..., :3], covariances[..., :3, :3])
+        prior = _predicted(of.way, i + 1, of.states[i], of.covariances[i])
+        gain = of.covariances[i] @ prior.moves.swapaxes(1, 2) @ np.linalg.inv(prior.covariances)
+        states[i] += np.einsum("hij,hj->hi", gain, states[i + 1] - prior.states)
+        change = after - prior.covariances
+        after = of.covariances[i] + gain @ change @ gain.swapaxes(1, 2)
+        covariances[i] = after[:, :3, :3]
+    return Smoothed(states[..., :3], covariances)
+
+
+class _Predicted(NamedTuple):
+    """States (H, 5), covariances and transitions (H, 5, 5) to a position, before it counts."""
+
+    states: FloatArray
+    covariances: FloatArray
+    moves: FloatArray
+
+
+def _predicted(way: Way, i: int, before: FloatArray, covariances: FloatArray) -> _Predicted:
+    """Position `i` from the states and covariances after the one before."""
+    states = _moved(before, way.steps[:, i - 1], way.drifts[i - 1])
+    moves = np.tile(np.eye(STATES), (len(before), 1, 1))
+    moves[:, 2, 3:] = -way.drifts[i - 1]
+    moves[:, 0, 2] = before[:, 1] - states[:, 1]
+    moves[:, 1, 2] = states[:, 0] - before[:, 0]
+    added = np.pad(way.step_variances[i - 1], (0, 2)) + way.gaps[i - 1] * ACROSS_GAP
+    turned = moves @ covariances @ moves.swapaxes(1, 2)
+    return _Predicted(states, turned + np.diag(added), moves)
 
 
 def _moved(states: FloatArray, steps: FloatArray, drifts: FloatArray) -> FloatArray:
@@ -125,13 +137,14 @@ def _moved(states: FloatArray, steps: FloatArray, drifts: FloatArray) -> FloatAr
 
 
 def _updated(
-    states: FloatArray, covariances: FloatArray, off: FloatArray, variances_m2: FloatArray
+    prior: _Predicted, off: FloatArray, variances_m2: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """States and covariances with one measured position, in Joseph form."""
+    covariances = prior.covariances
     spread = covariances[:, :2, :2] + variances_m2[:, None, None] * np.eye(2)
     gain = covariances[:, :, :2] @ np.linalg.inv(spread)
-    kept = np.tile(np.eye(STATES), (len(states), 1, 1))
+    kept = np.tile(np.eye(STATES), (len(covariances), 1, 1))
     kept[:, :, :2] -= gain
     noise = variances_m2[:, None, None] * (gain @ gain.swapaxes(1, 2))
     updated = kept @ covariances @ kept.swapaxes(1, 2) + noise
-    return states + np.einsum("hij,hj->hi", gain, off), updated
+    return prior.states + np.einsum("hij,hj->hi", gain, off), updated
