@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from odometry.errors import OdometryError
+from odometry.errors import OdometryError, RunFolderError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -104,12 +104,22 @@ def main() -> None:
     except Interrupted as error:
         click.echo(f"{error}: {error.left}", err=True)
         sys.exit(error.exit_code)
+    except RunFolderError as error:
+        click.echo(f"Error: {'. '.join([str(error), *_likely_cause(error)])}", err=True)
+        sys.exit(1)
     except (OdometryError, OSError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(1)
     except MemoryError as error:
         click.echo(f"Error: there is not enough memory for this input: {error}", err=True)
         sys.exit(1)
+
+
+def _likely_cause(error: RunFolderError) -> tuple[str, ...]:
+    """Why a run folder cannot be read and what to do, as `check` says it; nothing if unclear."""
+    from odometry.checks.findings.unreadable import likely_cause
+
+    return likely_cause(error) or ()
 
 
 def _written() -> "list[Path]":

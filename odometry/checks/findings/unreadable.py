@@ -137,17 +137,18 @@ NEEDED = "a run folder holds run.toml and odometry.csv"
 
 def unreadable(error: RunFolderError) -> Finding:
     """The finding for a folder that cannot be read."""
-    message = str(error)
-    for pattern, cause, remedy in CAUSES:
-        if re.search(pattern, message):
-            return Finding("unreadable", Level.REFUSED, message, cause, remedy)
-    return Finding(
-        "unreadable",
-        Level.REFUSED,
-        message,
+    cause, remedy = likely_cause(error) or (
         "A file of the run folder is not as the format says",
         "Correct the file at the place that is named",
     )
+    return Finding("unreadable", Level.REFUSED, str(error), cause, remedy)
+
+
+def likely_cause(error: RunFolderError) -> tuple[str, str] | None:
+    """Why a folder cannot be read, and what to do; None where only the error itself says so."""
+    message = str(error)
+    causes = (words for pattern, *words in CAUSES if re.search(pattern, message))
+    return next(((cause, remedy) for cause, remedy in causes), None)
 
 
 def no_run_folder(folder: Path) -> Finding | None:

@@ -83,6 +83,17 @@ def test_a_known_error_is_one_line_and_exit_code_1(here, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_file_that_is_not_as_the_format_says_is_named_with_its_remedy(here, tmp_path):
+    """As `check` names it: a pose.csv of a receiver that knows no heading."""
+    (tmp_path / "run.toml").write_text("[robot]\ntrack_width = 0.5\n")
+    (tmp_path / "odometry.csv").write_text("t,v_left,v_right\n0,0.5,0.5\n1,0.5,0.5\n")
+    (tmp_path / "pose.csv").write_text("t,x,y\n0,0,0\n1,0.5,0\n")
+    code, said = here("run", tmp_path, "--out", tmp_path / "out")
+    assert code == 1
+    assert "the header has t, x, y. The heading was not measured" in said
+    assert said.rstrip().endswith("positions alone are used then")
+
+
 def test_a_folder_that_cannot_be_made_is_one_line_and_exit_code_1(here, tmp_path, curvy_run):
     (tmp_path / "file").write_text("")
     code, said = here("run", curvy_run, "--out", tmp_path / "file" / "out")
