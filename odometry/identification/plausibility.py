@@ -183,8 +183,8 @@ def notes(fit: Fit) -> tuple[str, ...]:
     few = float(fit.freedom.min(initial=np.inf))
     if few < FEW_FREEDOM:
         found.append(
-            f"few windows, or few runs that differ: {few:.1f} degrees of freedom make intervals "
-            f"{float(deviations_within(np.array(few))) / NORMAL:.1f} times as wide as many would; "
-            "add runs"
+            f"few windows, or few runs that differ: an interval rests on {few:.1f} degrees of "
+            f"freedom and is {float(deviations_within(np.array(few))) / NORMAL:.1f} times as wide "
+            "as with many; add runs"
         )
     return tuple(found)

@@ -40,8 +40,8 @@ def write_modes_report(
         The files written, the page last. Figures of an earlier run are removed.
     """
     folder = Path(out) / "figures"
-    in_force, how_sure, to_do = in_short(followed)
-    short = [f"In force: {in_force}", f"How sure: {how_sure}", f"What to do: {to_do}"]
+    answer, how_sure, to_do = in_short(followed)
+    short = [f"Answer: {answer}", f"How sure: {how_sure}", f"What to do: {to_do}"]
     _, *others = sentences(followed)
     over_time = modes_picture(followed, folder)
     others_drawn = {

@@ -204,7 +204,8 @@ def advice(uncertainty: OdometerUncertainty, reference_name: str) -> str:
 
 
 def _distances(checks: Sequence[OpenLoopConsistency]) -> str:
-    return " and ".join(f"{check.distance_m:g}" for check in checks) + " m"
+    *others, last = (f"{check.distance_m:g}" for check in checks)
+    return f"{', '.join(others)} and {last} m" if others else f"{last} m"
 
 
 def filter_table(replay: Replay) -> dict[str, Any]:

@@ -147,5 +147,5 @@ def disagreement(seen: str) -> Finding:
         Level.WARNING,
         seen,
         "The cause cannot be determined: no single known fault explains it",
-        "Look where they part: check --picture",
+        "See where they differ: terrain-odometry check --picture FILE.png",
     )

@@ -74,6 +74,6 @@ def headings_apart(evidence: Evidence) -> str:
     if off < APART_RAD:
         return ""
     return (
-        f"headings of gyroscope and poses part by {np.degrees(off):.0f} degrees within "
-        f"{np.median(spans.lasts_s):.0f} s (in one of ten spans)"
+        f"headings of gyroscope and poses differ by {np.degrees(off):.0f} degrees or more within "
+        f"{np.median(spans.lasts_s):.0f} s, in one of ten such spans"
     )

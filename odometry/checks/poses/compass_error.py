@@ -74,7 +74,7 @@ def _yaw_bent(evidence: Evidence) -> Iterator[Finding]:
         "yaw_bent",
         Level.WARNING,
         f"yaw of pose.csv deviates from the gyroscope by up to {np.degrees(size):.0f} degrees, "
-        f"with the direction in which the robot points (they part by {np.degrees(before):.1f} "
+        f"with the direction in which the robot points (they differ by {np.degrees(before):.1f} "
         f"degrees in {np.median(spans.lasts_s):.2g} s, without this by {np.degrees(after):.1f})",
         "Yaw is distorted by magnetism: iron of the robot deflects its compass",
         "Calibrate the compass on the robot (hard iron), or leave yaw empty",

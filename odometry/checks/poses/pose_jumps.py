@@ -130,9 +130,9 @@ def _noise_m(positions_m: FloatArray, standing_m: FloatArray) -> float:
 
 def _drift(evidence: Evidence, at_s: float, farthest_m: float, usual_m: float) -> Finding:
     return disagreement(
-        f"poses part by {farthest_m:.2g} m from what treads and yaw say within {2 * FAR_S:g} s at "
-        f"{evidence.run_time_s(at_s):.0f} s, and do not jump themselves (usual: {usual_m:.2g} m), "
-        "as by stamps that are off, treads at fault, reflected signals (multipath) or slip"
+        f"poses end {farthest_m:.2g} m (usual: {usual_m:.2g} m) from where treads and yaw lead, "
+        f"within {2 * FAR_S:g} s at {evidence.run_time_s(at_s):.0f} s, without a jump of the "
+        "poses: stamps that are off, treads at fault, reflected signals (multipath) or slip do so"
     )
 
 

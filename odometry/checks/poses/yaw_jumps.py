@@ -76,9 +76,9 @@ def yaw_jumps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
         yield _jumps(evidence, stamps_s[own], step[own], _across_wraps(evidence, stamps_s[own]))
     elif peaks:
         yield disagreement(
-            f"yaw of pose.csv and the gyroscope part by {np.degrees(step[peaks[0]]):.0f} degrees "
-            f"within {2 * FAR_S:g} s at {evidence.run_time_s(stamps_s[peaks[0]]):.1f} s, where the "
-            "yaw does not jump itself"
+            f"yaw of pose.csv and the gyroscope differ by {np.degrees(step[peaks[0]]):.0f} "
+            f"degrees within {2 * FAR_S:g} s at {evidence.run_time_s(stamps_s[peaks[0]]):.1f} s; "
+            "yaw itself has no jump there"
         )
 
 

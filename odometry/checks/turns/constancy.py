@@ -42,10 +42,12 @@ def uneven_way(evidence: Evidence, factor: float) -> str:
     if evidence.heading is None:
         forward_m, mean_m = m.distance_m, np.abs(mean_m)
     most = ratio_left(factor)
-    along = _uneven(_of_way(m), forward_m, mean_m, most=most)
+    along = _uneven(_of_way(m), forward_m, mean_m, most=most, unit=" m")
     turns = next(measured_turns(evidence))
     of, most = turns.motion, ratio_left(factor, TURNS_LIKE)
-    across = _uneven(_of_turns(of), turns.target, of.difference_m, of.lasts_s, most=most)
+    across = _uneven(
+        *(_of_turns(of), turns.target, of.difference_m, of.lasts_s), most=most, unit=" rad"
+    )
     if sides := one_side(evidence):
         return sides
     if along:
@@ -135,6 +137,7 @@ def uneven_map(evidence: Evidence) -> str:
         m.mean_m,
         m.difference_m,
         most=PLACES_LIKE,
+        unit=" m",
     )
     return f"a metre of tread travel moves the robot by {found}" if found else ""
 
@@ -152,7 +155,9 @@ def ratio_left(factor: float, like: tuple[float, float] = LIKE) -> float:
     return float(np.clip(np.exp(SHARE * abs(np.log(factor))), *like))
 
 
-def _uneven(groups: Groups, target: FloatArray, *columns: FloatArray, most: float) -> str:
+def _uneven(
+    groups: Groups, target: FloatArray, *columns: FloatArray, most: float, unit: str = ""
+) -> str:
     """Two groups of windows whose factors of the first column surely differ by more than `most`."""
     if not len(target):
         return ""  # as where no course of positions turns with the treads
@@ -162,7 +167,8 @@ def _uneven(groups: Groups, target: FloatArray, *columns: FloatArray, most: floa
             continue
         unsure = np.sqrt(sum((fit.slope_sigma / fit.slope) ** 2 for fit in (first, second)))
         if abs(np.log(abs(first.slope / second.slope))) > np.log(most) + CERTAIN * unsure:
-            return f"{abs(first.slope):.3g} {words[0]} and by {abs(second.slope):.3g} {words[1]}"
+            factors = [f"{abs(fit.slope):.3g}{unit}" for fit in (first, second)]
+            return f"{factors[0]} {words[0]} and by {factors[1]} {words[1]}"
     return ""
 
 

@@ -48,7 +48,7 @@ def positions_apart_everywhere(evidence: Evidence) -> str:
     if spans is None or float(np.mean(spans.much)) < 0.5:
         return ""
     return (
-        f"positions part by {np.median(spans.apart_m):.2g} m from what treads and yaw say in "
+        f"positions end {np.median(spans.apart_m):.2g} m from where treads and yaw lead in "
         f"{SPAN_S:g} s, in which the robot drives {np.median(spans.driven_m):.2g} m"
     )
 
@@ -67,7 +67,7 @@ def positions_apart(evidence: Evidence) -> str:
         return ""
     worst = int(np.argmax(np.where(odd, spans.apart_m, 0.0)))
     return (
-        f"positions part by {spans.apart_m[worst]:.2g} m from what treads and yaw say within "
+        f"positions end {spans.apart_m[worst]:.2g} m from where treads and yaw lead within "
         f"{SPAN_S:g} s at {evidence.run_time_s(spans.start_s[worst]):.0f} s (usual: "
         f"{usual_m:.2g} m), as by reflected signals (multipath) or slip"
     )

@@ -1,4 +1,4 @@
-"""Treads that turn the robot much less than the gyroscope reads, or the other way.
+"""Treads that turn the robot much less than the gyroscope reads, or to the other side.
 
 Slip makes treads turn more than the robot does, not less. So a tread reports what is not its own
 speed (a driver that mirrors an encoder, channels that are exchanged, a sign that is lost), or the
@@ -192,8 +192,8 @@ def ended(watch: ContraryTreads | None, stamp_s: float) -> tuple[FilterEvent, ..
     if watch is None or not watch.is_found:
         return ()
     text = (
-        "the treads turned the robot by less than half of what the gyroscope read, or the other "
-        "way: a tread reported what was not its own speed, the robot slid on by itself, or the "
+        "the treads turned the robot by less than half of what the gyroscope read, or to the other "
+        "side: a tread reported what was not its own speed, the robot slid on by itself, or the "
         "gyroscope erred; the ICRs were not updated"
     )
     return (FilterEvent("contrary_treads", watch.since_s, stamp_s, text),)

@@ -174,5 +174,5 @@ def moved_words(moved: Moved) -> str:
     by = f" ({100 * share:+.1f} %)" if not moved.unit and share else ""
     return (
         f"{moved.name} of the base moved from {moved.before:.4g} to {moved.after:.4g}{unit}{by}, "
-        f"{moved.sigmas:.0f} standard deviations of its calibration: more than that allows"
+        f"{moved.sigmas:.0f} standard deviations of its calibration: more than chance explains"
     )

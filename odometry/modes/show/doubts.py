@@ -85,7 +85,7 @@ def _of_poses(followed: Followed) -> list[Doubt]:
         found.append(
             Doubt(
                 f"the poses scatter {np.median(track.scatter[off]):.1f} times as far as in the "
-                f"runs of identification {when(followed, off)}",
+                f"runs of identification, {when(followed, off)}",
                 "identify the modes from runs with poses as noisy as these, or take velocity "
                 "modes, which are recognised by the gyroscope",
                 share_of_time(followed, off),
@@ -94,7 +94,7 @@ def _of_poses(followed: Followed) -> list[Doubt]:
     if track.blocked is not None and track.blocked.any():
         found.append(
             Doubt(
-                "the treads turn on the spot and the robot does not turn "
+                "the treads turn on the spot and the robot does not turn, "
                 f"{when(followed, track.blocked)}",
                 "look whether the robot was blocked, its wheels spun, or the log held old speeds",
                 share_of_time(followed, track.blocked),
@@ -116,7 +116,7 @@ def _of_travel(followed: Followed) -> list[Doubt]:
     return [
         Doubt(
             f"measured positions went {ratio:.2f} times as far as the most probable mode "
-            f"says {when(followed, off)}",
+            f"says, {when(followed, off)}",
             "check the size and pressure of the tyres, the load, and the positions",
             share_of_time(followed, off),
         )

@@ -95,7 +95,7 @@ def _open_words(followed: Followed) -> Iterator[str]:
         if len(names) < len(followed.mode_set.names) and share >= LEAST_OPEN
     ]
     if said:
-        yield f"While undetermined, it is {', '.join(said)}."
+        yield f"While undetermined, the candidates are {', '.join(said)}."
 
 
 def _answered(followed: Followed, track: ModeTrack, one: Detection) -> str:
@@ -147,10 +147,10 @@ def _in_force(followed: Followed) -> str:
     others = np.flatnonzero(answers[named] != last)
     since = named[others[-1] + 1] if len(others) else named[0]
     until = named[-1]
-    when = f"at the end, answered since {track.stamps_s[since]:.1f} s"
+    when = f"at the end, since {track.stamps_s[since]:.1f} s"
     if until < len(answers) - 1:
-        when = f"answered last, at {track.stamps_s[until]:.1f} s; undetermined after that"
-    return f"{last} {when}; of the time {_shares_said(followed.shares(track))}."
+        when = f"at last, until {track.stamps_s[until]:.1f} s; undetermined after that"
+    return f"{last} {when}. Shares of the run: {_shares_said(followed.shares(track))}."
 
 
 def _shares_said(shares: Mapping[str, float], unit: str = "") -> str:
@@ -168,7 +168,7 @@ def _how_sure(followed: Followed) -> str:
 
 
 def _fit_said(followed: Followed) -> str:
-    named = f"a mode is named from a probability of {percent(followed.config.sure)} on"
+    named = f"a mode is named where its probability is {percent(followed.config.sure)} or more"
     doubt = _first_doubt(followed)
     if doubt is not None:
         return f"{named}; {doubt.reason}: there no mode is named."
@@ -179,7 +179,7 @@ def _fit_said(followed: Followed) -> str:
                 f"{named}, and where it fits; {percent(doubtful)} of the time one is as probable "
                 "and is not named, because it does not fit well."
             )
-        return f"{named}, and a mode of the set fits all along."
+        return f"{named}, and some mode of the set fits at every moment."
     worst = max(followed.misfits, key=lambda one: one.to_s - one.from_s)
     more = len(followed.misfits) - 1
     others = f" and in {more} shorter stretch{'es' if more > 1 else ''}" if more else ""
@@ -202,8 +202,8 @@ def _to_do(followed: Followed) -> str:
         )
     if worst is not None or followed.doubtful(followed.last_track) >= LEAST_DOUBT:
         return (
-            "look at the innovations of each signal (innovations.png): where it keeps its sign, "
-            "identify the modes again on longer runs that are driven as this one was."
+            "look at the innovations of each signal (innovations.png): if they stay above zero, or "
+            "below, identify the modes again on longer runs that are driven as this one was."
         )
     if followed.shares(followed.last_track).get(UNDETERMINED, 0.0) > MOSTLY:
         return "drive turns of several radii to both sides: on straights modes do not differ."

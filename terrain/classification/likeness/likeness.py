@@ -84,7 +84,7 @@ class Likeness:
         return (
             f"the {those} unlike the training photographs of the model{how}: another camera, "
             f"distance, light or compression. {100 * self.rank:.0f} % of held-out training patches "
-            f"are nearer to the others than {these}, and {100 * self.exposure:.0f} % of "
+            f"are more like the other ones than {these}, and {100 * self.exposure:.0f} % of "
             f"those of similar texture are darker. {'The label' if one else 'Many labels'} may be "
             "wrong; label images of this camera and train with them"
         )

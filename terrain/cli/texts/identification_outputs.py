@@ -195,7 +195,7 @@ def _assumed(found: "Identified") -> list[str]:
         return []
     return [
         f"{', '.join(names)}: assumed from [robot] of run.toml or by rule of thumb; "
-        "--fix NAME=VALUE says better"
+        "state what you know better with --fix NAME=VALUE"
     ]
 
 

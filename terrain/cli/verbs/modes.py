@@ -114,7 +114,7 @@ def _one(
     with output.writing() as part:
         write_modes(result, part, about(output.made))
         write_modes_report(result, part, checks_made())
-    for title, said in zip(("In force", "How sure", "What to do"), in_short(result), strict=True):
+    for title, said in zip(("Answer", "How sure", "What to do"), in_short(result), strict=True):
         click.echo(f"{title}: {said}")
     for sentence in sentences(result):
         click.echo(sentence)

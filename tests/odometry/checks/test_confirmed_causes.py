@@ -98,7 +98,7 @@ def test_positions_that_wander_aside_did_not_jump():
         Level.WARNING
     )
     assert found.name == "sensors_disagree"
-    assert "part by" in found.seen
+    assert "from where treads and yaw lead" in found.seen
 
 
 @pytest.mark.parametrize("fault", ["pose_mirrored", "gyroscope_reversed", "treads_swapped"])

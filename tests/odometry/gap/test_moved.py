@@ -52,7 +52,7 @@ def test_a_move_that_is_not_allowed_is_said(scaled_result, calibration):
     (said,) = [text for text in sentences(moved) if "of the base moved" in text]
     assert said.startswith("alpha_left of the base moved from ")
     assert "(+5.0 %)" in said
-    assert said.endswith("more than that allows.")
+    assert said.endswith("more than chance explains.")
     assert not [text for text in sentences(scaled_result) if "of the base moved" in text]
 
 

@@ -96,7 +96,7 @@ def test_a_bound_without_effect_is_an_answer(winding):
 def test_few_degrees_of_freedom_are_said(winding):
     windows = WindowConfig(horizon_m=20.0)
     said = notes(identified(winding, config=windows).terrains["gravel"].fit)
-    assert any("degrees of freedom make intervals" in words for words in said)
+    assert any("an interval rests on" in words for words in said)
 
 
 def test_residuals_far_beyond_the_noise_are_said(winding):

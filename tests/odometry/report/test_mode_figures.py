@@ -117,7 +117,7 @@ def test_a_page_of_velocity_modes(grounds, tmp_path):
     names = sorted(file.relative_to(tmp_path).as_posix() for file in written)
     assert names == ["figures/innovations.png", "figures/modes.png", "report.html"]
     page = (tmp_path / "report.html").read_text()
-    short = [page.index(f"<li>{title}: ") for title in ("In force", "How sure", "What to do")]
+    short = [page.index(f"<li>{title}: ") for title in ("Answer", "How sure", "What to do")]
     assert short == sorted(short)
     assert short[-1] < page.index("<img")
     assert "Where the answer is none of these" not in page

@@ -90,7 +90,7 @@ def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):
     ice, tar = content["motion"]["detections"]
     right = f"right {100 * ice['right']:.0f} % of the time"
     words = f"ice: detected after {ice['after_s']:.1f} s; {right}"
-    assert answer.stdout.startswith("In force: tar at the end, answered since ")
+    assert answer.stdout.startswith("Answer: tar at the end, since ")
     assert words in answer.stdout
     assert tar["after_s"] < 2.0
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
@@ -174,7 +174,7 @@ def test_several_runs_get_a_folder_each_and_a_failed_one_a_row(make, models, tmp
     assert answer.exit_code == 1
     assert "blind: failed: " in answer.stdout
     assert "no yaw rate; expected gyro_z" in answer.stdout
-    assert answer.stdout.count("\n  how sure: a mode is named from a probability of 90 % on") == 2
+    assert answer.stdout.count("\n  how sure: a mode is named where its probability is 90 %") == 2
     with (out / "runs.csv").open(newline="") as stream:
         rows = {row["run"]: row for row in csv.DictReader(stream)}
     assert list(rows) == ["drive", "blind", "drive_2", "absent"]

@@ -47,7 +47,7 @@ def cases():
     return [
         ({"travel": travel}, UNDETERMINED, "positions went 0.93 times as far", "check the size"),
         ({"turns_are_off": turns}, UNDETERMINED, "turns by more or by less", "identify a mode"),
-        ({"blocked": turns}, UNDETERMINED, "the robot does not turn between", "look whether"),
+        ({"blocked": turns}, UNDETERMINED, "the robot does not turn, between", "look whether"),
         ({"gain": gain}, UNDETERMINED, "turns by 5 % more than on a, which", "identify a mode"),
         ({"centre": turns}, UNDETERMINED, "turns about another point", "identify a mode"),
         ({"drifts": turns}, UNDETERMINED, "drifts in one direction of the world", "look whether"),

@@ -30,8 +30,8 @@ def small_misfit(lasts):
 @pytest.mark.parametrize(
     ("most", "words"),
     [
-        (["b", "a", "a"], "a at the end, answered since 0.5 s; "),
-        (["b", "a", "", ""], "a answered last, at 0.5 s; undetermined after that; "),
+        (["b", "a", "a"], "a at the end, since 0.5 s. "),
+        (["b", "a", "", ""], "a at last, until 0.5 s; undetermined after that. "),
         (["", ""], "nothing that the motion distinguishes"),
     ],
 )
@@ -41,12 +41,12 @@ def test_an_answer_is_in_force_at_the_end_where_it_is_given_there(most, words):
 
 def test_few_answers_are_said_and_the_others_are_counted():
     short = in_short(by_hand([*"aaaabbbccd", "e", "e"], names=tuple("abcde")))
-    assert short[0].endswith("of the time a 36 %, b 27 %, c 18 %, d 9 %, 1 other.")
+    assert short[0].endswith("Shares of the run: a 36 %, b 27 %, c 18 %, d 9 %, 1 other.")
 
 
 def test_a_share_that_rounds_to_nothing_is_not_said():
     short = in_short(by_hand(["b", *"a" * 400]))
-    assert short[0].endswith("of the time a 100 %.")
+    assert short[0].endswith("Shares of the run: a 100 %.")
 
 
 def test_where_a_probable_mode_does_not_fit_well_it_is_said_why_it_is_not_named():
@@ -62,7 +62,7 @@ def test_where_modes_are_alike_none_is_doubtful():
     answers = by_hand(["a", "", "", ""])
     assert answers.doubtful(answers.motion) == 0.0
     assert (
-        "fits all along. Not checked: terrains that the set does not hold: " in in_short(answers)[1]
+        "at every moment. Not checked: terrains that the set does not hold" in in_short(answers)[1]
     )
 
 

@@ -38,7 +38,7 @@ def test_where_no_mode_fits_it_is_said_since_when_and_in_which_signal(leaving):
     (one,) = leaving.misfits
     assert 3.8 < one.from_s < 4.5
     in_force, how_sure, to_do = in_short(leaving)
-    assert in_force.startswith(f"{NONE_OF_THESE} at the end, answered since ")
+    assert in_force.startswith(f"{NONE_OF_THESE} at the end, since ")
     assert f"no mode fits from {one.from_s:.1f} s to {one.to_s:.1f} s: the yaw rate is" in how_sure
     assert to_do.startswith("check the gyroscope")
     content = content_of(leaving)
@@ -77,8 +77,11 @@ def test_none_of_these_is_neither_right_nor_wrong(leaving):
 
 def test_a_mode_that_fits_needs_nothing_to_be_done():
     in_force, how_sure, to_do = in_short(followed(run_of(1.0, labels=ICE), velocity_set()))
-    assert in_force.startswith("ice at the end, answered since 0.")
-    assert "and a mode of the set fits all along. Not checked: terrains that the set" in how_sure
+    assert in_force.startswith("ice at the end, since 0.")
+    assert (
+        "and some mode of the set fits at every moment. Not checked: terrains that the set"
+        in how_sure
+    )
     assert "Not checked: the distance, without" in how_sure
     assert to_do.startswith("nothing; ")
 
