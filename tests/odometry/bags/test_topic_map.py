@@ -4,6 +4,8 @@ from pathlib import Path
 
 from odometry.bags.topic_roles import KEYS, read_topic_map
 from odometry.bags.wheel_names import UNITS
+from odometry.errors import BagError
+from odometry.io.structured import read_toml
 
 EXAMPLE = Path(__file__).parents[3] / "data/bags/map.toml"
 
@@ -14,6 +16,12 @@ def test_the_shipped_map_can_be_read():
     assert topic_map.robot["frame_height"] == 0.132
     assert topic_map.other_odometry == ("/odometry/filtered",)
     assert topic_map.wheels["unit"] in UNITS
+
+
+def test_the_shipped_map_shows_every_key():
+    content = read_toml(EXAMPLE, BagError)
+    for table, keys in KEYS.items():
+        assert keys.keys() - (content[table] if table else content).keys() == set()
 
 
 def test_options_override_the_map_key_by_key():
