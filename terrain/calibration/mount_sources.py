@@ -69,7 +69,7 @@ def mount_of_run(run: Run, lens: LensSource) -> MountSource | None:
     return MountSource(Camera.from_table(table | lens.lens.to_table(), where), where)
 
 
-def mount_as_stated(lens: Lens, mount: ArrayLike, where: str = "as stated") -> MountSource:
+def mount_as_stated(lens: Lens, mount: ArrayLike, where: str = "--mount") -> MountSource:
     """A mount (6,) that somebody measured.
 
     Raises

@@ -85,7 +85,11 @@ def _mounts(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:
     for cause, remedy, other in angles:
         for cause_too, remedy_too, place in places:
             both = np.concatenate([place, other])
-            yield f"mount: {cause}, and {cause_too}", f"{remedy}; {remedy_too}", both
+            yield (
+                f"mount: {cause}, and {cause_too}",
+                f"{remedy}; {remedy_too[0].lower()}{remedy_too[1:]}",
+                both,
+            )
 
 
 def _angles(mount: FloatArray) -> Iterator[tuple[str, str, FloatArray]]:

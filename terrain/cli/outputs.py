@@ -206,9 +206,14 @@ def _command(context: click.Context) -> str:
 
 
 def _words(parameter: click.Parameter, values: list[Any]) -> Iterator[str]:
-    for value in values:
-        if isinstance(parameter, click.Option):
-            yield parameter.opts[-1]
-            if parameter.is_flag:
-                continue
-        yield str(value)
+    said = [str(value) for value in values]
+    if not isinstance(parameter, click.Option):
+        yield from said
+    elif parameter.is_flag:
+        yield parameter.opts[-1]
+    elif parameter.multiple:
+        for value in said:
+            yield from (parameter.opts[-1], value)
+    else:  # one word, or as many as the option takes; of COLSxROWS both numbers in one
+        words = said if parameter.nargs > 1 else ["x".join(said)]
+        yield from (parameter.opts[-1], *words)

@@ -166,6 +166,6 @@ def _why_nothing(result: "RunResult") -> str:
     if not result.replay.accepted.any():
         return "nothing was learned, as no pose was used"
     return (
-        "nothing was learned. They state smaller uncertainties than this run reaches, and stay, "
-        "whether they fit or not (a note says where they do not); or none was in force"
+        "nothing was learned. Each terrain in force, if any, is stated with smaller uncertainties "
+        "than this run reaches; a note says where a table does not fit"
     )

@@ -107,11 +107,11 @@ def _notes(labelled: "LabelledTerrain", given: "Sequence[GivenTerrain]") -> Iter
     few = [f"{label} ({count})" for label, count in _places(labelled).items() if count < FEW_PLACES]
     if few:
         yield (
-            f"Note: patches of few places: {', '.join(few)}; `train` needs 2 a class, and tests "
-            f"itself well with {FEW_PLACES} or more"
+            f"Note: patches of few places: {', '.join(few)}; `train` needs 2 of each terrain, "
+            f"and {FEW_PLACES} or more for good held-out scores"
         )
     if len(_places(labelled)) == 1:
-        yield "Note: all patches are of one class; `train` needs another one, of another run"
+        yield "Note: all patches are of one terrain; `train` needs a second one, of another run"
 
 
 def _places(labelled: "LabelledTerrain") -> dict[str, int]:

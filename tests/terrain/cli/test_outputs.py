@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import shlex
 from importlib.metadata import version
 
 import pytest
@@ -12,6 +13,8 @@ from odometry.errors import OdometryError
 from odometry.installed import shipped_data
 from odometry.outputs.manifest import Manifest, read_manifest
 from odometry.parameters import read_parameters
+from terrain.cli.outputs import asked
+from terrain.cli.verbs.camera import camera
 from terrain.cli.verbs.evaluate import evaluate
 from terrain.cli.verbs.identify import identify
 from terrain.cli.verbs.run import run
@@ -136,6 +139,24 @@ def test_another_input_or_setting_is_another_identity(own_run, tmp_path, world):
 
 
 @pytest.mark.usefixtures("no_report")
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--mount", *("0.1", "0.0", "0.5", "0.0", "0.7", "-0.1"), "--write"],
+        ["--chessboard", "9x6", "--square-m", "0.03"],
+        ["--transforms", "frames.yaml", "--frame", "front camera"],
+    ],
+)
+def test_the_command_that_is_kept_is_read_as_the_one_that_was_given(own_run, tmp_path, options):
+    (tmp_path / "frames.yaml").touch()
+    given = [str(tmp_path / word) if word == "frames.yaml" else word for word in options]
+    first = camera.make_context("camera", [str(own_run), "--out", "out", *given])
+    kept = shlex.split(asked(first).command)
+    assert kept[:2] == ["terrain-odometry", "camera"]
+    again = camera.make_context("camera", [*kept[2:], "--out", "out"])
+    assert again.params == first.params
+
+
 def test_no_command_reads_what_was_not_finished(own_run, tmp_path):
     out = tmp_path / "out"
     assert invoke(run, own_run, "--out", out).exit_code == 0
