@@ -29,7 +29,7 @@ def processes_option(command: Callable[..., None]) -> Callable[..., None]:
         "--processes",
         type=click.IntRange(min=1),
         metavar="N",
-        help="How many at a time.  [default: one for each core]",
+        help="How many processes work at a time.  [default: one for each core]",
     )(command)
 
 
@@ -38,7 +38,7 @@ def scheduler_option(command: Callable[..., None]) -> Callable[..., None]:
     return click.option(
         "--scheduler",
         metavar="ADDRESS",
-        help="Dask scheduler whose workers do it instead, such as tcp://host:8786.",
+        help="Dask scheduler whose workers do the work instead, such as tcp://host:8786.",
     )(command)
 
 
@@ -120,7 +120,7 @@ def window_options(command: Callable[..., None]) -> Callable[..., None]:
         type=float,
         default=1.0,
         show_default=True,
-        help="Between starts of windows, in horizons.",
+        help="From the start of a window to that of the next, in horizons.",
     )
     @click.option(
         "--position-sigma",
@@ -174,7 +174,7 @@ def network_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--layers",
         metavar="NAME,...",
-        help="Of this network.  [default: those before the first strides]",
+        help="Layers of this network.  [default: those before the first strides]",
     )
     @click.option(
         "--input-range",

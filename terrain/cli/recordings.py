@@ -26,7 +26,7 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
         type=click.FloatRange(min=0),
         default=0.0,
         metavar="SECONDS",
-        help="Leave out what each run holds before, from its first stamp.  [default: its start]",
+        help="Use each run from here on, counted from its first stamp.  [default: its start]",
     )
     @click.option(
         "--to",
@@ -34,7 +34,7 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
         type=click.FloatRange(min=0, min_open=True),
         default=math.inf,
         metavar="SECONDS",
-        help="Leave out what each run holds after.  [default: its end]",
+        help="Use each run up to here, counted from its first stamp.  [default: its end]",
     )
     @wraps(command)
     def with_span(*, from_s: float, to_s: float, **others: Any) -> None:

@@ -31,7 +31,9 @@ def board_size(text: str) -> tuple[int, int]:
 
 @click.command()
 @click.argument("run_folder", metavar="RUN", type=RunFolder())
-@click.option("--out", required=True, metavar="DIR", type=OUTPUT, help="For pictures, camera.toml.")
+@click.option(
+    "--out", required=True, metavar="DIR", type=OUTPUT, help="Folder for pictures and camera.toml."
+)
 @click.option(
     "--file",
     "calibration",

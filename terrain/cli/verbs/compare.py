@@ -142,7 +142,7 @@ FOLDER = RunFolder()
     type=click.IntRange(min=0),
     default=0,
     show_default=True,
-    help="Of further starts of an identification, and of the bootstrap.",
+    help="Seed of the starts of identifications after the first, and of the bootstrap.",
 )
 def compare(
     folders: tuple[Path, ...],

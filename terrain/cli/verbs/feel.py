@@ -35,7 +35,7 @@ HEADER = ("run", "answer", "probability", "unknown", "windows")
     type=Positive(1e6),
     default=10.0,
     show_default=True,
-    help="Over so much time evidence is put together [s].",
+    help="Time over which evidence is put together [s].",
 )
 @click.option(
     "--sure",

@@ -55,8 +55,12 @@ if TYPE_CHECKING:
 )
 @window_options
 @span_options
-@click.option("--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter; repeat.")
-@click.option("--free", multiple=True, metavar="NAME", help="Identify a known one too; repeat.")
+@click.option(
+    "--fix", multiple=True, metavar="NAME=VALUE", help="Hold a parameter at a value; repeat."
+)
+@click.option(
+    "--free", multiple=True, metavar="NAME", help="Identify a parameter that is known, too; repeat."
+)
 @click.option("--terrain", metavar="NAME", help="Terrain of runs that name none.")
 @click.option(
     "--loss",
@@ -71,14 +75,14 @@ if TYPE_CHECKING:
     type=click.IntRange(min=1),
     default=4,
     show_default=True,
-    help="Searches from different values.",
+    help="How many searches, each from other values.",
 )
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
     default=0,
     show_default=True,
-    help="Seed of the further starts.",
+    help="Seed of the starts after the first.",
 )
 @click.option(
     "--profile",

@@ -29,7 +29,11 @@ if TYPE_CHECKING:
     help="Length of the windows, 1 to 5 s; repeat: runs held out say which is best.",
 )
 @click.option(
-    "--seed", type=int, default=0, show_default=True, help="Of the folds in which runs are dealt."
+    "--seed",
+    type=int,
+    default=0,
+    show_default=True,
+    help="Seed by which runs are dealt into folds.",
 )
 @span_options
 def identify_feel(

@@ -38,7 +38,11 @@ SLOW_TIGHT_TURNS_M_S = ((0.05, 0.15), (0.15, 0.05))  # to the left, to the right
     show_default=True,
     help="Terrains, from the yaw rate; or slipping wheels, from the poses.",
 )
-@click.option("--shared", is_flag=True, help="Velocity: one model, with the noise of each mode.")
+@click.option(
+    "--shared",
+    is_flag=True,
+    help="Velocity: one model of all modes, which differ by their noise alone.",
+)
 @click.option(
     "--common-noise",
     is_flag=True,

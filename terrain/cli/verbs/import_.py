@@ -61,11 +61,15 @@ KEYS = {
     help="What is taken from which topic; options override it.",
 )
 @click.option("--wheels", metavar="TOPIC", help="Measured wheel speeds.")
-@click.option("--left", metavar="NAMES", help="Left wheels: joints, places or paths, by commas.")
+@click.option(
+    "--left",
+    metavar="NAMES",
+    help="Left wheels, with commas: joints, places in an array, or paths of fields.",
+)
 @click.option("--right", metavar="NAMES", help="Right wheels.")
 @click.option("--left-sign", type=click.Choice(["1", "-1"]), help="-1: they count backwards.")
 @click.option("--right-sign", type=click.Choice(["1", "-1"]), help="-1: they count backwards.")
-@click.option("--gear", type=Positive(1e6), help="Turns that are counted for one of a wheel.")
+@click.option("--gear", type=Positive(1e6), help="Turns that are counted for one turn of a wheel.")
 @click.option("--unit", metavar="UNIT", help="Of the wheel speeds: rad/s, rpm, m/s, rad, ...")
 @click.option(
     "--wheel-radius",
@@ -79,7 +83,11 @@ KEYS = {
     metavar="METRES",
     help="Between the middles of the treads, where the bag does not say.",
 )
-@click.option("--frame", metavar="FRAME", help="The robot's base frame.  [default: base_link ...]")
+@click.option(
+    "--frame",
+    metavar="FRAME",
+    help="The robot's base frame.  [default: base_footprint, else base_link, ...]",
+)
 @click.option(
     "--frame-height", type=float, metavar="METRES", help="Height of that frame above the terrain."
 )

@@ -46,12 +46,12 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     @click.option(
         "--preset",
         type=click.Choice(PRESETS),
-        help="A published system whole; what contradicts it is an error.",
+        help="A published system as printed; an option that contradicts it is an error.",
     )
     @click.option(
         "--terrain",
         metavar="NAME",
-        help="In force until the first switch; by default that of [run] in run.toml, else unknown.",
+        help="Terrain in force until the first switch.  [default: that of run.toml, else unknown]",
     )
     @click.option("--config", type=FILE, help="Settings (TOML): [filter] [region] [switch] ...")
     @click.option(

@@ -107,7 +107,7 @@ def _vehicle_file(name: str) -> Path:
     type=click.FloatRange(min=1, min_open=False),
     default=160.0,
     show_default=True,
-    help="About how long [s].",
+    help="Approximate duration [s].",
 )
 @click.option(
     "--max-speed",
