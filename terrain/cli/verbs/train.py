@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     type=click.Choice(["default", "fast", "chen2023"]),
     default="default",
     show_default=True,
-    help="fast uses four of the 19 filtered copies, and one patch of an image in a run, for small "
+    help="fast uses SFTA of four filtered copies alone, and one patch of an image in a run, for small "
     "computers; chen2023 is the paper's classifier.",
 )
 @click.option(
