@@ -78,10 +78,7 @@ def _where(result: GapResult) -> Iterator[str]:
         yield "None of the recorded variables predicts the disagreement beyond chance."
     for number, region in enumerate(location.regions[:REGIONS]):
         if region.words == EVERYWHERE:
-            yield (
-                "None of them says where it is larger: it is "
-                f"{metres(region.excess_m)} above the noise floor in all."
-            )
+            yield "None of them says where it is larger."
             continue
         which = "The largest part of it" if number == 0 else "The next part"
         yield (

@@ -10,6 +10,7 @@ from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.gap.answer.next_drives import NextDrive
 from odometry.gap.answer.result import Equivalent, NamedEffect
+from odometry.gap.locate.regions import Region
 from odometry.gap.prepare.statistic import Gap
 from odometry.gap.show.quantities import (
     Share,
@@ -52,6 +53,14 @@ def test_a_named_effect_with_its_numbers(scaled_result):
     assert "speed" in predicted
     assert "speed" in next(s for s in said if s.startswith("What predicts the disagreement"))
     assert scaled_result.location.regions[0].words in whole
+
+
+def test_a_gap_that_no_variable_locates_has_one_size(scaled_result):
+    """A region's size is of the windows that did not choose it: beside the gap it contradicts."""
+    everywhere = replace(scaled_result.location, regions=(Region("everywhere", {}, 0.66, 1.0),))
+    said = sentences(replace(scaled_result, location=everywhere))
+    assert "None of them says where it is larger." in said
+    assert not [text for text in said if "0.66" in text]
 
 
 def test_a_drive_that_decides_goes_before_another_measurement(scaled_result):
