@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     type=click.Choice(["default", "fast", "chen2023"]),
     default="default",
     show_default=True,
-    help="fast uses SFTA of four filtered copies alone, and one patch of an image in a run, for small "
-    "computers; chen2023 is the paper's classifier.",
+    help="fast uses SFTA of four filtered copies alone, and one patch of an image in a run, for "
+    "small computers; chen2023 is the paper's classifier.",
 )
 @click.option(
     "--patch-size",
