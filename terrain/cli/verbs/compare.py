@@ -73,11 +73,11 @@ def _print_splits(comparison: "Comparison") -> None:
     predictors = [p for each in comparison.split_models for p in each.predictors.values()]
     if not any(p.covariance_order and AS_GIVEN not in p.notes for p in predictors):
         return
-    click.echo("Held out, and what the models were identified on for it:")
+    click.echo("Held out, and the runs on which the models were identified:")
     for models in comparison.split_models:
         split = models.split
         held_out = ", ".join(part.name for part in split.held_out)
-        click.echo(f"  {split.robot} on {split.terrain}: {held_out}: {split.training_names}")
+        click.echo(f"  {split.robot} on {split.terrain}: {held_out}, by {split.training_names}")
 
 
 def _print_place(comparison: "Comparison", place: "Place") -> None:

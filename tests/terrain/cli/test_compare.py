@@ -73,7 +73,7 @@ def test_a_row_for_each_model_then_what_it_means(runs, tmp_path):
         assert float(row[7]) == pytest.approx(model["translation_m_per_m"]["median"], abs=5e-5)
         assert float(row[8]) == pytest.approx(model["rotation_deg_per_m"]["mean"], abs=5e-5)
         assert float(row[9]) == pytest.approx(model["rotation_deg_per_m"]["median"], abs=5e-5)
-    assert "rover on grass: run_0: run_1" in answer.stdout
+    assert "rover on grass: run_0, by run_1\n" in answer.stdout
     assert "icr_symmetric has the smallest error over 2 m on grass in translation" in answer.stdout
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
@@ -124,7 +124,7 @@ def test_the_parameters_it_writes_can_be_compared_again(runs, tmp_path):
     content = json.loads((second / "comparison.json").read_text())
     assert content["models"] == ["icr_symmetric"]
     assert not (second / "parameters").exists()
-    assert "what the models were identified on" not in answer.stdout  # nothing was
+    assert "the runs on which the models were identified" not in answer.stdout  # nothing was
 
 
 def test_a_set_of_another_terrain_says_once_what_to_do(runs, tmp_path):
