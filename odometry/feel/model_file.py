@@ -26,7 +26,7 @@ class FeelFileError(OdometryError):
     """A file of how terrains feel is damaged, foreign, or newer than this program."""
 
 
-FEEL = FileKind("terrain-odometry feel", 4, "model of feel", FeelFileError)
+FEEL = FileKind("terrain-odometry feel", 4, "model of `identify-feel`", FeelFileError)
 
 OF_RUNS = "of_runs"  # beside the numbers of the discriminants
 

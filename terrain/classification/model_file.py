@@ -25,7 +25,7 @@ from terrain.classification.photographs.trained_on import TrainedOn, check_codes
 from terrain.classification.presets import PRESETS
 from terrain.errors import ImageError, ModelFileError, NetworkError
 
-CLASSIFIER = FileKind("terrain-odometry classifier", 1, "model file", ModelFileError)
+CLASSIFIER = FileKind("terrain-odometry classifier", 1, "model file of `train`", ModelFileError)
 
 
 class ModelFile:

@@ -68,7 +68,7 @@ def test_damage_is_reported(model, tmp_path):
     assert not is_feel_model(tmp_path / "b.feel")
     with zipfile.ZipFile(tmp_path / "c.feel", "w") as archive:
         archive.writestr("x", "y")
-    for name, match in (("b", "checksum|cannot be read"), ("c", "not a model of feel")):
+    for name, match in (("b", "checksum|cannot be read"), ("c", "not a model of `identify-feel`")):
         with pytest.raises(FeelFileError, match=match):
             read_feel_model(tmp_path / f"{name}.feel")
 
