@@ -68,7 +68,7 @@ def gap(
 ) -> None:
     """Find which effect a model lacks on the run folders MEASURED, and add it.
 
-    The answer is the first of: an effect of the catalogue, "none" (noise explains all), or
+    The answer is an effect of the catalogue, "none" (noise explains all), or
     "unknown" (something that no effect explains; a smooth term closes what it can).
 
     \b

@@ -68,7 +68,7 @@ def modes(
     Writes the probability of each mode over time, the answers, and how soon and how often they
     were right where the run says what is true. "none of these" is the answer where no mode fits,
     with the signal that contradicts it. With --seen, the labels of vision are used too, and long
-    disagreements of vision and motion are reported; with --feel, so is what the robot feels.
+    disagreements of vision and motion are reported; with --feel, what the robot feels is used, too.
     Several runs get a folder each; one that cannot be used becomes a row of runs.csv that says why,
     and the exit code is then 1.
 
