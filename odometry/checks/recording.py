@@ -40,6 +40,7 @@ from odometry.checks.stamps.gaps import gaps
 from odometry.checks.stamps.held_treads import held_treads
 from odometry.checks.stamps.interleaved import interleaved
 from odometry.checks.stamps.joined_recordings import joined_recordings, without_seams
+from odometry.checks.stamps.late_by_chance import spread_late, without_explained_lags
 from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
 from odometry.checks.stamps.set_back import set_back
@@ -162,12 +163,14 @@ def check_recording(run: Run | str | Path) -> CheckReport:
     if len(run.odometry) < LEAST_ROWS:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     with np.errstate(over="ignore", invalid="ignore"):
-        late, run = spread_bursts(run)
+        bursts, run = spread_bursts(run)
+        late, run, most_late_s = spread_late(run)
         wrapped, run = unwrapped(run)
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
+        found = without_explained_lags(found, evidence, most_late_s)
         confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
-        said = [*wrapped, *copies, *without_consequences([*late, *confirmed_ones])]
+        said = [*wrapped, *copies, *without_consequences([*bursts, *late, *confirmed_ones])]
         stays = list(poses_stay(evidence, said))
         of_velocity = list(velocity(evidence))  # which no other check uses
     findings = in_order([*said, *stays, *of_velocity])

@@ -6,6 +6,7 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.measured import robot_run
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
+from odometry.preparation.even_rows import with_even_rows
 from odometry.preparation.pose_delay import without_pose_delay
 from odometry.preparation.pose_noise import with_pose_noise
 from odometry.preparation.row_rates import with_row_rates
@@ -21,6 +22,7 @@ def prepared_run(
 
     `effects` are those of the sensors.
     """
+    run, even = with_even_rows(run, config)
     # the filter itself undoes the lever arm of positions, and in time of all poses
     if effects or not (config.causal or lacks_yaw(run)):
         run = robot_run(run, effects)
@@ -28,4 +30,4 @@ def prepared_run(
     run, late = without_pose_delay(run, config)
     config, noisy = with_pose_noise(run, config)
     config, coarse = with_speed_step(run, config)
-    return run, config, (*of_rows, *late, *noisy, *coarse)
+    return run, config, (*even, *of_rows, *late, *noisy, *coarse)

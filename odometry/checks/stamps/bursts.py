@@ -1,13 +1,13 @@
 """Rows that were sent in bursts and have the stamps of their arrival."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level
+from odometry.late_rows import with_stamps
 from odometry.run import Run
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
@@ -66,8 +66,7 @@ def spread_bursts(run: Run) -> tuple[list[Finding], Run]:
             continue
         found.append(_finding(f"{name}.csv", table.stamps_s, bursts))
         if bursts.within < AT_ONCE:
-            columns = {**table.columns, "t": _even_s(table.stamps_s, bursts.last)}
-            run = replace(run, **{name: replace(table, columns=columns)})
+            run = with_stamps(run, name, _even_s(table.stamps_s, bursts.last))
     return found, run
 
 

@@ -108,7 +108,8 @@ def _stamp_unit(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> str:
     period = float(np.median(np.diff(stamps_s)))
     odometry = name in ("odometry.csv", "imu.csv")
     longest_s = LONGEST_ODOMETRY_PERIOD_S if odometry else LONGEST_PERIOD_S
-    if SHORTEST_PERIOD_S <= period <= longest_s:
+    mean = float(np.mean(np.diff(stamps_s)))  # of rows at once most are microseconds apart
+    if SHORTEST_PERIOD_S <= period <= longest_s or period < SHORTEST_PERIOD_S <= mean <= longest_s:
         return ""
     short_s, long_s = np.quantile(np.diff(stamps_s), [0.1, 0.9])
     if name == "odometry.csv" and period < LONGEST_HOLD_S and long_s > EVEN * short_s:

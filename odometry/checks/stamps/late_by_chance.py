@@ -1,0 +1,75 @@
+"""Rows of a steady sensor that came late by chance, or all at once after a stall."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
+from odometry.late_rows import LateRows, late_rows, with_stamps
+from odometry.run import Run
+from odometry.windows.spans import runs_of
+
+WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
+HELD_UP = 0.5  # of the period, by which a row is late
+FEW = 0.2  # share of the rows: where fewer are late, they were held up now and then
+NEARLY_ALL = 0.95  # share of the rows
+LAGS = frozenset(
+    {"pose_late", "yaw_late", "positions_late", "gyroscope_late", "treads_late", "clocks_apart"}
+)
+ARRIVAL = "Stamps are those of arrival, not of the measurement: "
+HANDED_ON = "a serial line, USB, a network or a busy computer hands some rows on later than others"
+STALLED = (
+    "the logger, or what sends to it, stalled now and then, and the rows of that time came at once"
+)
+REMEDY = "Use the stamps of the sensor (header time); `run` takes even ones"
+
+
+def spread_late(run: Run) -> tuple[list[Finding], Run, Mapping[str, float]]:
+    """A finding for each file with late rows, and the run with even stamps in place of theirs.
+
+    Also how late nearly all rows of these files are at most: all of them may be.
+    """
+    found, most_s, began_s = [], {}, float(run.odometry.stamps_s[0])
+    for name in ("odometry", "imu"):
+        table = getattr(run, name)
+        late = None if table is None else late_rows(table)
+        if late is not None:
+            found.append(_finding(f"{name}.csv", late, began_s))
+            most_s[f"{name}.csv"] = float(np.quantile(late.late_s, NEARLY_ALL))
+            run = with_stamps(run, name, late.even_s)
+    return found, run, most_s
+
+
+def without_explained_lags(
+    found: Sequence[Finding], evidence: Evidence, most_s: Mapping[str, float]
+) -> list[Finding]:
+    """The findings but lags that rows which are all late explain (`most_s` by file)."""
+    treads_s = most_s.get("odometry.csv", 0.0)
+    gyroscope_s = most_s.get(evidence.gyroscope_file, 0.0)
+    late_s = {"pose": 0.0, "treads": treads_s, "gyroscope": gyroscope_s}
+    explained = bool(most_s) and all(
+        abs(lag.seconds) < LEAST_LAG_S or -late_s[early] <= lag.seconds <= late_s[late]
+        for (late, early), lag in lags_of(evidence).items()
+    )
+    return [finding for finding in found if not (explained and finding.name in LAGS)]
+
+
+def _finding(file: str, late: LateRows, began_s: float) -> Finding:
+    held_up = late.late_s > HELD_UP * late.period_s
+    many = held_up.mean() > FEW
+    stretches = runs_of(held_up)
+    where = "by chance" if many else f"in {counted(len(stretches), 'place')}"
+    even_s = late.even_s - began_s
+    return Finding(
+        "uneven_stamps",
+        Level.WARNING if late.uneven_s > WARNED_S else Level.NOTE,
+        f"{file} has as many rows as {1 / late.period_s:.3g} Hz ask for, but {where} they come "
+        f"late, {100 * late.close.mean():.2g} % of all together with the row before: by "
+        f"{late.late_s.mean():.2g} s in the mean and {late.late_s.max():.2g} s at most beside even "
+        "stamps",
+        ARRIVAL + (HANDED_ON if many else STALLED),
+        REMEDY,
+        () if many else tuple((even_s[a].item(), even_s[b - 1].item()) for a, b in stretches),
+    )

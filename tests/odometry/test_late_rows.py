@@ -1,0 +1,105 @@
+"""Rows of a steady sensor with stamps of their arrival."""
+
+import numpy as np
+import pytest
+
+from odometry.late_rows import SLACK, even_stamps_s, late_rows
+from tests.odometry.arrivals import after_stalls, by_chance, stamped
+from tests.odometry.checks.drives import PERIOD_S, winding
+
+
+@pytest.fixture(scope="module")
+def rows():
+    """Two minutes at 20 Hz."""
+    return winding().odometry
+
+
+LATE = {
+    "by chance": by_chance,
+    "a twentieth, by more": lambda t: by_chance(t, 0.2, 0.05),
+    "after stalls": after_stalls,
+    "twenty at once": lambda t: by_chance(np.repeat(t[19::20], 20), 1e-4),
+    "polled": lambda t: by_chance(0.33 * np.ceil(t / 0.33), 1e-4),
+}
+
+
+@pytest.mark.parametrize("change", LATE.values(), ids=LATE)
+def test_even_stamps_are_nearly_those_of_the_measurement(rows, change):
+    arrived_s = change(rows.stamps_s)
+    late = late_rows(stamped(rows, arrived_s))
+    assert late.period_s == pytest.approx(PERIOD_S, rel=0.01)
+    assert np.std(late.even_s - rows.stamps_s) < 0.3 * np.std(arrived_s - rows.stamps_s)
+    assert late.late_s == pytest.approx(arrived_s - late.even_s)
+
+
+def test_even_stamps_are_the_earliest_that_later_rows_allow():
+    arrived_s = by_chance(PERIOD_S * np.arange(60))
+    step_s = (1 - SLACK) * PERIOD_S
+    expected_s = [
+        min(arrived_s[j] - step_s * (j - i) for j in range(i, len(arrived_s)))
+        for i in range(len(arrived_s))
+    ]
+    assert even_stamps_s(arrived_s, PERIOD_S) == pytest.approx(np.array(expected_s))
+
+
+def test_a_gap_stays_where_no_row_came():
+    arrived_s = np.array([0.0, 0.05, 0.1, 5.0, 5.001, 5.1])
+    even_s = even_stamps_s(arrived_s, PERIOD_S)
+    assert even_s[3] - even_s[2] > 4.8
+    assert (even_s <= arrived_s).all()
+
+
+def lost(rows, share, seed=0):
+    kept = np.flatnonzero(np.random.default_rng(seed).random(len(rows)) > share)
+    return stamped(rows, rows.stamps_s[kept], kept)
+
+
+def own_times(rows, draw):
+    return stamped(rows, np.cumsum(draw(np.random.default_rng(0), len(rows))))
+
+
+def of_changes(rows, limit_m_s):
+    """Rows where a speed changed by so much since the last one."""
+    speeds, kept = rows.stack("v_left", "v_right"), [0]
+    for row in range(len(rows)):
+        if np.abs(speeds[row] - speeds[kept[-1]]).max() > limit_m_s:
+            kept.append(row)
+    return stamped(rows, rows.stamps_s[kept], np.array(kept))
+
+
+def twice(rows):
+    each = np.repeat(np.arange(len(rows)), 2)
+    return stamped(rows, rows.stamps_s[each] + 2e-3 * (np.arange(len(each)) % 2), each)
+
+
+def now_and_then(rows):
+    kept = np.flatnonzero(rows.stamps_s % 5 < 1)
+    return stamped(rows, rows.stamps_s[kept], kept)
+
+
+OTHERS = {
+    "even": lambda rows: rows,
+    "rows lost": lambda rows: lost(rows, 0.1),
+    "rows lost at most times": lambda rows: lost(rows, 0.6),
+    "times of their own": lambda rows: own_times(rows, lambda r, n: r.uniform(0.01, 0.09, n)),
+    "times by chance": lambda rows: own_times(rows, lambda r, n: r.exponential(0.05, n)),
+    "changes of 0.02 m/s": lambda rows: of_changes(rows, 0.02),
+    "changes of 0.1 m/s": lambda rows: of_changes(rows, 0.1),
+    "each row twice": twice,
+    "now and then": now_and_then,
+    "set ahead": lambda rows: stamped(rows, rows.stamps_s + 3.0 * (rows.stamps_s > 60)),
+    "few": lambda rows: stamped(rows, by_chance(rows.stamps_s)[:60], slice(60)),
+    "late by little": lambda rows: stamped(rows, by_chance(rows.stamps_s, 0.005)),
+    "back in time": lambda rows: stamped(rows, rows.stamps_s[::-1]),
+}
+
+
+@pytest.mark.parametrize("log", OTHERS.values(), ids=OTHERS)
+def test_other_logs_have_no_late_rows(rows, log):
+    assert late_rows(log(rows)) is None
+
+
+def test_a_column_without_numbers_does_not_hide_that_rows_repeat(rows):
+    again = twice(rows)
+    again.columns["gyro_z"] = np.full(len(again), np.nan)
+    assert late_rows(again) is None
