@@ -31,7 +31,9 @@ TIMES = 10  # as many rows, over which stamps of rows that are late are off by n
 STEADY = 2.5
 # Share of rows that may be lost, or by which a clock may run off, before even stamps go wrong.
 SLACK = 0.02
-SAME = 0.25  # of the change of other rows: rows that follow close and change less repeat each other
+# Of the share of other rows that have a new value: rows that follow close and have one more rarely
+# are copies.
+SAME = 0.1
 
 
 class LateRows(NamedTuple):
@@ -88,7 +90,7 @@ def late_rows(table: Table) -> LateRows | None:
     late_s = stamps_s - even_s
     uneven = float(np.sqrt(np.mean(late_s**2))) > LEAST_LATE * period_s
     together = close.mean() > TOGETHER * np.mean(late_s > period_s)
-    if not (uneven and together and _is_steady(stamps_s, rows)) or _repeat(table, close):
+    if not (uneven and together and _is_steady(stamps_s, rows)) or repeat_values(table, close):
         return None
     return LateRows(even_s, late_s, close, period_s)
 
@@ -129,14 +131,16 @@ def _is_steady(stamps_s: FloatArray, rows: int) -> bool:
     return bool(over_many < STEADY * over_few)
 
 
-def _repeat(table: Table, close: BoolArray) -> bool:
-    """Whether rows that follow close have the values of the row before, and others have not."""
+def repeat_values(table: Table, close: BoolArray) -> bool:
+    """Whether rows (N,) that follow close repeat the values before them, and others do not."""
+    change = False
     for name, column in table.columns.items():
         if name == "t" or column.dtype.kind != "f":
             continue
-        changes = np.abs(np.diff(column))
-        known = np.isfinite(changes)
-        together, others = changes[known & close[1:]], changes[known & ~close[1:]]
-        if len(together) and together.mean() > SAME * (others.mean() if len(others) else 0.0):
+        known = np.isfinite(column[1:] + column[:-1])
+        new = np.diff(column) != 0
+        together, others = new[known & close[1:]], new[known & ~close[1:]]
+        if np.sum(together) * len(others) > SAME * np.sum(others) * len(together):
             return False
-    return True
+        change |= bool(others.any())
+    return change

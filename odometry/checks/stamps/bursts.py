@@ -1,13 +1,14 @@
 """Rows that were sent in bursts and have the stamps of their arrival."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.checks.findings.finding import Finding, Level
-from odometry.late_rows import with_stamps
+from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.late_rows import repeat_values, with_stamps
 from odometry.run import Run
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
@@ -64,6 +65,11 @@ def spread_bursts(run: Run) -> tuple[list[Finding], Run]:
         bursts = None if table is None else _bursts(table.stamps_s)
         if bursts is None or (name == "pose" and not _go_on(table.stack("x", "y"), bursts.last)):
             continue
+        first = np.append(0, bursts.last[:-1] + 1)
+        if repeat_values(table, ~np.isin(np.arange(len(table)), first)):
+            found.append(_repeated(f"{name}.csv", len(table) - len(first)))
+            run = replace(run, **{name: table.rows(first)})
+            continue
         found.append(_finding(f"{name}.csv", table.stamps_s, bursts))
         if bursts.within < AT_ONCE:
             run = with_stamps(run, name, _even_s(table.stamps_s, bursts.last))
@@ -110,6 +116,16 @@ def _finding(file: str, stamps_s: FloatArray, bursts: Bursts) -> Finding:
         f"usually {usual_s:.2g} s and at most {waits_s.max():.2g} s apart",
         f"Either {ARRIVAL}{others}" if others else ARRIVAL.capitalize(),
         "Use the stamps of the sensor (header time), or spread the rows evenly",
+    )
+
+
+def _repeated(file: str, rows: int) -> Finding:
+    return Finding(
+        "repeated_rows",
+        Level.NOTE,
+        f"{counted(rows, 'row')} of {file} follow another at once, with its values",
+        "Rows are written more than once",
+        "Nothing to do: the first ones were used",
     )
 
 

@@ -8,6 +8,7 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.bursts import spread_bursts
+from tests.odometry import arrivals
 from tests.odometry.checks.drives import drive, table
 from tests.odometry.checks.faulty import SENSORS
 
@@ -96,6 +97,20 @@ def test_poses_of_two_sensors_that_come_together_are_left(driven, apart_m):
     twice["x"][1::2] += apart_m
     run = replace(driven, pose=replace(each, columns=twice))
     assert spread_bursts(run)[1] is run
+
+
+def test_rows_that_are_written_twice_are_used_once(driven):
+    """2 ms apart, and with rows lost: no gap lies between them."""
+    kept = np.flatnonzero(np.arange(len(driven.odometry)) % 50 > 0)
+    once = driven.odometry.rows(kept)
+    each = np.repeat(np.arange(len(once)), 2)
+    stamps_s = once.stamps_s[each] + 2e-3 * (np.arange(len(each)) % 2)
+    twice = replace(driven, odometry=arrivals.stamped(once, stamps_s, each))
+    (found,), run = spread_bursts(twice)
+    assert found.name == "repeated_rows"
+    assert found.seen.startswith(f"{len(once)} rows of odometry.csv")
+    assert run.odometry.stamps_s.tolist() == once.stamps_s.tolist()
+    assert [found.name for found in check_recording(twice).findings] == ["repeated_rows"]
 
 
 def test_rows_recorded_now_and_then_are_no_bursts(driven):
