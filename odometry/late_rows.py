@@ -16,19 +16,20 @@ from odometry.run import Run
 from odometry.table import Table
 
 CLOSE = 0.2  # of the period: no steady sensor measures twice so soon
-# Share of the rows that follow so close: one stall of a second each 50 s makes 2 %, and 31 real
-# recordings have none.
-FEWEST_CLOSE = 0.02
+FEWEST_CLOSE = 0.02  # share of the rows that follow so close; 31 real recordings have none
 # Of the time, within such rows: rows that come at once take less, those that are measured more.
 AT_ONCE = 0.02
 LEAST_LATE = 0.5  # of the period, root mean square: less moves no row to the place of another
-TOGETHER = 0.1  # ... and of those late by a period: others wait behind them
 PIECE, FEWEST = 200, 8  # rows over which the period is taken, and of such pieces
 TIMES = 10  # as many rows, over which stamps of rows that are late are off by no more
 # Times that the variance over a piece is that over a tenth of it: 1 where each row is late by
 # itself, 10 where the times between rows are their own (rows lost, a log of changes). In recordings
 # of development made late it was 2.3 at most, in other logs 3.6 at least.
 STEADY = 2.5
+# Periods without rows, share of these times' rows that follow at once, and share of such times, in
+# a log that stalls now and then; else rows are lost.
+STALL, MADE_UP, MOSTLY = 5.0, 0.7, 0.8
+ON_TIME = 0.25  # of the period, by which such a share of the rows of that log are late at most
 # Share of rows that may be lost, or by which a clock may run off, before even stamps go wrong.
 SLACK = 0.02
 # Of the share of other rows that have a new value: rows that follow close and have one more rarely
@@ -76,23 +77,22 @@ def late_rows(table: Table) -> LateRows | None:
     >>> late_rows(run.odometry) is None
     True
     """
-    stamps_s = table.stamps_s
+    stamps_s, lasts_s = table.stamps_s, np.diff(table.stamps_s)
     rows = min(PIECE, len(stamps_s) // FEWEST)
-    if rows < 2 * TIMES or np.any(np.diff(stamps_s) < 0):
+    if rows < 2 * TIMES or np.any(lasts_s < 0):
         return None
-    period_s = _period_s(stamps_s, rows)
-    lasts_s = np.diff(stamps_s)
-    close = np.concatenate([[False], lasts_s < CLOSE * period_s])
-    at_once_s = float(np.sum(lasts_s[close[1:]]))
-    if close.mean() < FEWEST_CLOSE or at_once_s > AT_ONCE * (stamps_s[-1] - stamps_s[0]):
-        return None
-    even_s = even_stamps_s(stamps_s, period_s)
-    late_s = stamps_s - even_s
-    uneven = float(np.sqrt(np.mean(late_s**2))) > LEAST_LATE * period_s
-    together = close.mean() > TOGETHER * np.mean(late_s > period_s)
-    if not (uneven and together and _is_steady(stamps_s, rows)) or repeat_values(table, close):
-        return None
-    return LateRows(even_s, late_s, close, period_s)
+    for period_s, is_late in (
+        (float(np.median(lasts_s)), _stalls),
+        (_period_s(stamps_s, rows), _is_late_by_chance),
+    ):
+        close = np.concatenate([[False], lasts_s < CLOSE * period_s])
+        even_s = even_stamps_s(stamps_s, period_s)
+        found = LateRows(even_s, stamps_s - even_s, close, period_s)
+        at_once_s = float(np.sum(lasts_s[close[1:]]))
+        if at_once_s > AT_ONCE * (stamps_s[-1] - stamps_s[0]) or not is_late(stamps_s, found, rows):
+            continue
+        return None if repeat_values(table, close) else found
+    return None
 
 
 def with_stamps(run: Run, name: str, stamps_s: FloatArray) -> Run:
@@ -118,17 +118,32 @@ def _period_s(stamps_s: FloatArray, rows: int) -> float:
     return float(periods_s[quarter : len(periods_s) - quarter].mean())
 
 
-def _is_steady(stamps_s: FloatArray, rows: int) -> bool:
-    """Whether stamps are off by as much over so many rows as over a tenth of them.
+def _is_late_by_chance(stamps_s: FloatArray, found: LateRows, rows: int) -> bool:
+    """Whether many are, and stamps are off by as much over so many rows as over a tenth of them.
 
     Means over several numbers of rows: bursts of one size are even over multiples of it.
     """
+    uneven_s = float(np.sqrt(np.mean(found.late_s**2)))
+    if found.close.mean() < FEWEST_CLOSE or uneven_s < LEAST_LATE * found.period_s:
+        return False
     few = range(rows // (2 * TIMES), rows // TIMES + 1)
     over_few, over_many = (
         np.mean([np.var(stamps_s[m:] - stamps_s[:-m]) for m in counts])
         for counts in (few, [TIMES * m for m in few])
     )
     return bool(over_many < STEADY * over_few)
+
+
+def _stalls(stamps_s: FloatArray, found: LateRows, _: int) -> bool:
+    """Whether rows of most times without any come at once after them."""
+    lasts_s = np.diff(stamps_s)
+    before = np.flatnonzero(lasts_s > STALL * found.period_s)
+    if not len(before) or np.mean(found.late_s < ON_TIME * found.period_s) < MOSTLY:
+        return False
+    alone = np.append(np.flatnonzero(~found.close), len(stamps_s))
+    together = alone[np.searchsorted(alone, before + 1, side="right")] - before - 1
+    made_up = together * found.period_s > MADE_UP * lasts_s[before]
+    return bool(made_up.mean() > MOSTLY)
 
 
 def repeat_values(table: Table, close: BoolArray) -> bool:

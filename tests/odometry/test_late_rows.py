@@ -18,6 +18,8 @@ LATE = {
     "by chance": by_chance,
     "a twentieth, by more": lambda t: by_chance(t, 0.2, 0.05),
     "after stalls": after_stalls,
+    "after one stall": lambda t: after_stalls(t, 70.0),
+    "after a stall, ended by another row": lambda t: after_stalls(t, 70.01),
     "twenty at once": lambda t: by_chance(np.repeat(t[19::20], 20), 1e-4),
     "polled": lambda t: by_chance(0.33 * np.ceil(t / 0.33), 1e-4),
 }
@@ -54,6 +56,18 @@ def lost(rows, share, seed=0):
     return stamped(rows, rows.stamps_s[kept], kept)
 
 
+def without_a_second(rows):
+    kept = np.flatnonzero(np.abs(rows.stamps_s - 50) > 0.5)
+    return stamped(rows, rows.stamps_s[kept], kept)
+
+
+def test_rows_on_time_stay_where_they_are_though_many_are_lost(rows):
+    few = lost(rows, 0.1)
+    stalled = late_rows(stamped(few, after_stalls(few.stamps_s, 30.0)))
+    on_time = few.stamps_s % 30 < 29
+    assert np.abs(stalled.late_s[on_time]).max() < 0.5 * PERIOD_S
+
+
 def own_times(rows, draw):
     return stamped(rows, np.cumsum(draw(np.random.default_rng(0), len(rows))))
 
@@ -87,6 +101,7 @@ OTHERS = {
     "changes of 0.1 m/s": lambda rows: of_changes(rows, 0.1),
     "each row twice": twice,
     "now and then": now_and_then,
+    "a second lost": without_a_second,
     "set ahead": lambda rows: stamped(rows, rows.stamps_s + 3.0 * (rows.stamps_s > 60)),
     "few": lambda rows: stamped(rows, by_chance(rows.stamps_s)[:60], slice(60)),
     "late by little": lambda rows: stamped(rows, by_chance(rows.stamps_s, 0.005)),

@@ -94,6 +94,7 @@ def main():
 
 
 def print_fault(fault, runs, as_is):
+    """What is said first, and by how many times errors grow, mean and (worst)."""
     first, ratios = Counter(), []
     for run, (known, before) in zip(runs, as_is, strict=True):
         late = faulty(run, fault)
