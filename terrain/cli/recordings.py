@@ -50,7 +50,7 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def read_runs(folders: Sequence[Path], span: "Span") -> "list[Run]":
-    """Read run folders in their order, each cut to the span and checked.
+    """Read run folders in their order, each cut to the span and checked, at even stamps.
 
     Raises
     ------
@@ -58,7 +58,19 @@ def read_runs(folders: Sequence[Path], span: "Span") -> "list[Run]":
         If a folder is not as the format says, cannot be used as it is, or nothing of it lies in
         the span.
     """
-    return [read_run(folder, span) for folder in folders]
+    return at_even_stamps([read_run(folder, span) for folder in folders])
+
+
+def at_even_stamps(runs: "Sequence[Run]") -> "list[Run]":
+    """Runs with even stamps of rows that came late by chance; says what was done."""
+    from odometry.estimation.config import IcrEkfConfig
+    from odometry.preparation.even_rows import with_even_rows
+
+    found = [with_even_rows(run, IcrEkfConfig()) for run in runs]
+    for run, events in found:
+        for event in events:
+            click.echo(f"Note: {run.folder}: {event.text}", err=True)
+    return [run for run, _ in found]
 
 
 def read_run(folder: Path, span: "Span", *, images: bool = False) -> "Run":

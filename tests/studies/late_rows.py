@@ -66,6 +66,7 @@ FAULTS = {
     "read each 0.33 s": lambda t, _: in_order(0.33 * np.ceil(t / 0.33)),
     "stalls of 1 s each 10 s": lambda t, rng: stalls(t, rng, 10, 1),
     "stalls of 1 s each 30 s": lambda t, rng: stalls(t, rng, 30, 1),
+    "a stall of 1 s a minute": lambda t, rng: stalls(t, rng, 60, 1),
     "stalls of 0.3 s each 10 s": lambda t, rng: stalls(t, rng, 10, 0.3),
     "before and after, by 50 ms": lambda t, rng: in_order(t + rng.normal(0, 0.05, len(t))),
     "whole 0.1 s": lambda t, _: 0.1 * np.floor(np.round(10 * t, 6)),

@@ -14,6 +14,7 @@ from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
 from odometry.modes.mode_set_file import write_mode_set
 from terrain.cli.verbs.modes import modes
+from tests.odometry.arrivals import by_chance
 from tests.odometry.modes.mode_examples import (
     positions_that_determine_no_yaw,
     run_of,
@@ -29,9 +30,11 @@ SEEN = "t,label,confidence,distance_ahead\n1,ice,0.9,0.5\n6,tar,0.9,0.5\n"
 def make(tmp_path):
     """A run folder, half on ice and half on tar as its truth says."""
 
-    def write(name, *, gyro=True, poses=True, lost=False, folder=tmp_path):
+    def write(name, *, gyro=True, poses=True, lost=False, late=False, folder=tmp_path):
         run = run_of(np.where(HALVES == "ice", 1.0, 2.0), size=len(HALVES))
         odometry = dict(run.odometry.columns)
+        if late:
+            odometry["t"] = by_chance(odometry["t"], 0.03)
         if not gyro:
             del odometry["gyro_z"]
         still = np.zeros(len(HALVES))
@@ -80,6 +83,13 @@ def invoke(*arguments):
 
 def files_of(out):
     return {file.relative_to(out).as_posix() for file in out.rglob("*") if file.is_file()}
+
+
+def test_rows_that_came_late_by_chance_are_followed_at_even_stamps(make, models, tmp_path):
+    out = tmp_path / "out"
+    answer = invoke(make("drive", late=True), "--models", models, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    assert "they were taken at even stamps" in answer.output
 
 
 def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):

@@ -6,16 +6,20 @@ from importlib import import_module
 from pathlib import Path
 
 import click
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.errors import RunFolderError
+from odometry.io.run_folder import write_run_folder
 from odometry.outputs.provenance import Made
 from odometry.run_span import Span
 from terrain.cli.outputs import comment
 from terrain.cli.recordings import CHECKS, read_runs
 from terrain.cli.verbs.run import run
+from tests.odometry.arrivals import with_arrival
+from tests.odometry.checks.drives import winding
 
 VERBS = ("run", "batch", "identify", "compare", "gap", "identify_modes", "modes")
 
@@ -36,6 +40,16 @@ def test_no_verb_reads_a_run_by_itself(name):
 def test_all_runs_are_cut(curvy_run):
     parts = read_runs([curvy_run, curvy_run], Span(2.0, 6.0))
     assert [(p.odometry.stamps_s[0], p.odometry.stamps_s[-1]) for p in parts] == [(2.0, 6.0)] * 2
+
+
+def test_rows_that_came_late_by_chance_are_read_at_even_stamps(tmp_path, capsys):
+    driven = winding(600)
+    late = with_arrival(driven).odometry.columns
+    write_run_folder(tmp_path, {"robot": {"track_width": 0.6}}, {"odometry": late})
+    (even,) = read_runs([tmp_path], Span())
+    off_s = np.std(even.odometry.stamps_s - driven.odometry.stamps_s)
+    assert off_s < 0.3 * np.std(late["t"] - driven.odometry.stamps_s)
+    assert "rows of odometry.csv have stamps of arrival" in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("no_report")
