@@ -23,7 +23,10 @@ HANDED_ON = "a serial line, USB, a network or a busy computer hands some rows on
 STALLED = (
     "the logger, or what sends to it, stalled now and then, and the rows of that time came at once"
 )
-REMEDY = "Use the stamps of the sensor (header time); other verbs take even ones"
+REMEDY = (
+    "Use the stamps of the sensor (header time); `run`, `identify`, `compare`, `gap` and `modes` "
+    "take even ones"
+)
 
 
 def spread_late(run: Run) -> tuple[list[Finding], Run, Mapping[str, float]]:
