@@ -135,7 +135,7 @@ def _is_late_by_chance(stamps_s: FloatArray, found: LateRows, rows: int) -> bool
 
 
 def _stalls(stamps_s: FloatArray, found: LateRows, _: int) -> bool:
-    """Whether rows of most times without any come at once after them."""
+    """Whether the rows of most times without rows come at once at their end, and others on time."""
     lasts_s = np.diff(stamps_s)
     before = np.flatnonzero(lasts_s > STALL * found.period_s)
     if not len(before) or np.mean(found.late_s < ON_TIME * found.period_s) < MOSTLY:
