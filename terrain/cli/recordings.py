@@ -58,10 +58,10 @@ def read_runs(folders: Sequence[Path], span: "Span") -> "list[Run]":
         If a folder is not as the format says, cannot be used as it is, or nothing of it lies in
         the span.
     """
-    return at_even_stamps([read_run(folder, span) for folder in folders])
+    return _at_even_stamps([read_run(folder, span) for folder in folders])
 
 
-def at_even_stamps(runs: "Sequence[Run]") -> "list[Run]":
+def _at_even_stamps(runs: "Sequence[Run]") -> "list[Run]":
     """Runs with even stamps of rows that came late by chance; says what was done."""
     from odometry.estimation.config import IcrEkfConfig
     from odometry.preparation.even_rows import with_even_rows

@@ -24,8 +24,8 @@ STALLED = (
     "the logger, or what sends to it, stalled now and then, and the rows of that time came at once"
 )
 REMEDY = (
-    "Use the stamps of the sensor (header time); `run`, `identify`, `compare`, `gap` and `modes` "
-    "take even ones"
+    "Use the stamps of the sensor (header time); verbs that fit or follow a run take even ones "
+    "(`causal` and live ones cannot)"
 )
 
 

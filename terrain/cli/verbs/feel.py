@@ -85,9 +85,9 @@ def _one(
     from odometry.feel.follow import follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about
-    from terrain.cli.recordings import checks_made, read_run
+    from terrain.cli.recordings import checks_made, read_runs
 
-    felt = follow_feel(read_run(folder, span), model, config)
+    felt = follow_feel(read_runs([folder], span)[0], model, config)
     with output.writing() as part:
         write_feel(felt, part, about(output.made))
         write_feel_report(felt, part, checks_made())
@@ -110,13 +110,13 @@ def _several(
     from odometry.feel.follow import Felt, follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about, folder_names
-    from terrain.cli.recordings import checks_made, read_run
+    from terrain.cli.recordings import checks_made, read_runs
 
     rows: dict[str, Felt | str] = {}
     with output.writing() as part:
         for name, folder in zip(folder_names(folders), folders, strict=True):
             try:
-                felt = follow_feel(read_run(folder, span), model, config)
+                felt = follow_feel(read_runs([folder], span)[0], model, config)
             except OdometryError as error:
                 rows[name] = str(error)
                 click.echo(f"{name}: failed: {error}")

@@ -175,10 +175,10 @@ def _followed(
     from odometry.modes.camera_prior import seen_terrains
     from odometry.modes.followed import followed
     from odometry.modes.velocity import VelocityModes
-    from terrain.cli.recordings import at_even_stamps, read_run, with_turns, with_yaw_rates
+    from terrain.cli.recordings import read_runs, with_turns, with_yaw_rates
 
     usable = with_yaw_rates if isinstance(mode_set.modes, VelocityModes) else with_turns
-    (run,) = usable(at_even_stamps([read_run(folder, span)]))
+    (run,) = usable(read_runs([folder], span))
     terrains = () if seen is None else seen_terrains(seen, run)
     if seen is not None and not terrains:
         click.echo(

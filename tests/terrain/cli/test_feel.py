@@ -11,6 +11,7 @@ from odometry.feel.model_file import read_feel_model
 from odometry.io.run_folder import write_run_folder
 from terrain.cli.verbs.feel import feel
 from terrain.cli.verbs.identify_feel import identify_feel
+from tests.odometry.arrivals import by_chance
 from tests.odometry.feel.feel_drives import drive
 
 
@@ -59,6 +60,17 @@ def test_a_run_is_recognised_and_written(model, folders, tmp_path):
     assert max(result["run_probabilities"], key=result["run_probabilities"].get) == "gravel"
     for name in ("feel.csv", "report.html", "figures/feel.png"):
         assert (tmp_path / "felt" / name).is_file()
+
+
+def test_a_run_whose_rows_came_late_is_felt_at_even_stamps(model, tmp_path):
+    run = drive("gravel", 1, seconds=20.0)
+    imu = {**run.imu.columns, "t": by_chance(run.imu.stamps_s, 0.02)}
+    write_run_folder(
+        tmp_path / "late", run.settings, {"odometry": run.odometry.columns, "imu": imu}
+    )
+    answer = invoke(tmp_path / "late", "--model", model[1], "--out", tmp_path / "felt")
+    assert answer.exit_code == 0, answer.output
+    assert "they were taken at even stamps" in answer.stderr
 
 
 def test_several_runs_get_a_folder_each_and_one_table(model, folders, tmp_path):
