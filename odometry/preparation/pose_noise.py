@@ -10,6 +10,7 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.preparation.lasting_errors import lasting_sigma_m
 from odometry.preparation.rounded_positions import with_rounding
+from odometry.preparation.wander_at_rest import wander_sigma_m
 from odometry.run import Run
 from odometry.windows.interpolated import poses_per_measured_one
 
@@ -45,6 +46,8 @@ def with_pose_noise(run: Run, config: IcrEkfConfig) -> Noise:
     config, noticed = _scattered(evidence, stamps_s, positions, config, least_m)
     if not noticed:
         config, noticed = rounded, of_rounding
+    config, wandering = _wandering(evidence.run, stamps_s, positions, config)
+    noticed = (*noticed, *wandering)
     count = poses_per_measured_one(stamps_s, positions)
     if count == 1:
         return config, noticed
@@ -86,3 +89,22 @@ def _scattered(
         (sigma_m, lasting_m),
     )
     return replace(config, position_sigma_m=sigma_m, lasting_sigma_m=lasting_m), (event,)
+
+
+def _wandering(
+    run: Run, stamps_s: FloatArray, positions: FloatArray, config: IcrEkfConfig
+) -> Noise:
+    """With errors of positions (M, 2) that last, where they wander while the treads stand."""
+    lasting_m = wander_sigma_m(run, stamps_s, positions)
+    if lasting_m is None or lasting_m <= max(config.lasting_sigma_m, config.position_sigma_m):
+        return config, ()
+    event = FilterEvent(
+        "wandering_positions",
+        float(stamps_s[0]),
+        float(stamps_s[-1]),
+        "positions wander while the treads stand: their errors last (satellites, a receiver that "
+        f"smooths). The sigmas of x and y hold {lasting_m:.2g} m of them, if they last for a "
+        "minute or so",
+        (lasting_m,),
+    )
+    return replace(config, lasting_sigma_m=lasting_m), (event,)
