@@ -100,7 +100,7 @@ def change_of_details(
     A veil (fog) takes from the details, and more from the details over the light. Light alone
     leaves the second as they are, another gamma leaves most of the first: only what both have lost,
     or gained, is a change of contrast. The finest details, which noise hides first, say more of
-    the focus.
+    the focus; no blur leaves more of them than there were.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def change_of_details(
     (2,) or None
         Logarithms of the changes of contrast (geometric mean of the changes of coarser details and
         of these over light; 0 where one rises and one falls), and of focus (the finest details over
-        those of the next octave): medians over tiles of terrain that both show, and of which one
+        those of the next octave, and no more than these have lost themselves): medians over tiles of terrain that both show, and of which one
         shows details. None where these are too few.
     """
     if before.image.shape != after.shape:
@@ -160,7 +160,15 @@ def _changes(
     """
     finest, *coarser = octaves[:, compared]
     details = np.mean(coarser, axis=0)
-    of_tiles = np.array([details, details - light[compared], finest - coarser[0]])
-    of_details, of_both, focus = np.quantile(of_tiles, share, axis=1)
-    contrast = np.sign(of_details) * np.sqrt(max(of_details * of_both, 0.0))
-    return np.array([contrast, focus])
+    over_light = light[compared]
+    of_tiles = np.array(
+        [details, details - over_light, finest, finest - over_light, finest - coarser[0]]
+    )
+    *changes, focus = np.quantile(of_tiles, share, axis=1)
+    contrast, of_finest = (_of_both(*changes[i : i + 2]) for i in (0, 2))
+    return np.array([contrast, max(focus, min(of_finest, 0.0))])
+
+
+def _of_both(of_details: float, over_light: float) -> float:
+    """What details and details over light both have lost, or gained; else 0."""
+    return float(np.sign(of_details) * np.sqrt(max(of_details * over_light, 0.0)))

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from terrain.image_labels.details_watch import NEAR_M, DetailsWatch
+from terrain.image_labels.details_watch import LOSSES, NEAR_M, DetailsWatch
 from terrain.image_labels.terrain_details import (
     LOSS,
     WIDTH_PX,
@@ -169,6 +169,14 @@ def test_smoother_terrain_ahead_is_no_change_and_fog_on_it_is(rough):
     assert TileDetails.of(after).level - TileDetails.of(before).level < -np.log(2)
     assert change_of_details(camera, before, after, step) == pytest.approx([0, 0], abs=0.3)
     assert change_of_details(camera, before, fog(after), step)[0] < -np.log(2)
+
+
+def test_coarse_details_beside_as_many_fine_ones_are_no_loss_of_the_focus(rng):
+    fine = 120 + 12 * rng.normal(0, 1, (240, 320))
+    coarse = 60 * cv2.GaussianBlur(rng.normal(0, 1, (240, 320)), (0, 0), 1.5)
+    finest, *coarser = TileDetails.of(fine + coarse).octaves - TileDetails.of(fine).octaves
+    assert np.median(finest - coarser[0]) < LOSSES[1]  # as many fine ones as before, relatively few
+    assert change_of_details(down(50), fine, fine + coarse, np.zeros(3))[1] > 0.2 * LOSSES[1]
 
 
 def test_more_light_on_noise_alone_cannot_be_compared(rng):
