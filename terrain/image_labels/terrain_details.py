@@ -116,8 +116,9 @@ def change_of_details(
     (2,) or None
         Logarithms of the changes of contrast (geometric mean of the changes of coarser details and
         of these over light; 0 where one rises and one falls), and of focus (the finest details over
-        those of the next octave, and no more than these have lost themselves): medians over tiles of terrain that both show, and of which one
-        shows details. None where these are too few.
+        those of the next octave, and no more than the finest have lost themselves): medians over
+        tiles of terrain that both show, and of which one shows details. None where these are too
+        few.
     """
     if before.image.shape != after.shape:
         return None

@@ -7,7 +7,13 @@ import numpy as np
 
 from odometry.run import UNKNOWN
 from odometry.set_of_robot import set_notes
-from terrain.classification.answer import DOUBTFUL, IMPROBABLE, TOO_UNLIKE, colourless_note
+from terrain.classification.answer import (
+    DOUBTFUL,
+    IMPROBABLE,
+    ONE_CHANNEL,
+    TOO_UNLIKE,
+    colourless_note,
+)
 from terrain.classification.likeness.noticed_alterations import unnoticed
 from terrain.classification.no_ground import no_ground_note
 from terrain.classification.training_light import BY_LIGHT
@@ -21,7 +27,7 @@ from terrain.terrain_names import name_notes
 
 MANY_REFUSED = 0.1
 FEW_EVENTS = 10
-FEWEST_IMAGES, MOSTLY_UNKNOWN = 20, 0.5
+FEWEST_IMAGES, MOSTLY_UNKNOWN, MANY_WITHOUT = 20, 0.5, 0.2
 REFUSED_POSES = "refused_poses"  # kind of an event that says the same
 
 
@@ -84,7 +90,10 @@ def _images(watcher: TerrainWatcher) -> list[str]:
         found.append(empty)
     reasons = Counter(image_label.reason for image_label in watcher.image_labels)
     grey = colourless_note(reasons, len(watcher.image_labels))
-    hardly_any = _blind(watcher.image_labels) or _few_names(watcher.image_labels)
+    hardly_any = _blind(watcher.image_labels) or [
+        *_without_label(watcher.image_labels),
+        *_few_names(watcher.image_labels),
+    ]
     return found + (hardly_any or ([] if grey is None else [grey]))
 
 
@@ -126,6 +135,22 @@ def _blind(image_labels: Sequence[ImageLabel]) -> list[str]:
         "Look at them with terrain-odometry camera RUN --model MODEL --out DIR: where they do not "
         "show the terrain ahead it suggests a pitch; where they do, the model needs patches of "
         "this terrain and camera (label, train)"
+    ]
+
+
+def _without_label(image_labels: Sequence[ImageLabel]) -> list[str]:
+    """Say that many images which show the region ahead were not classified, and why."""
+    visible = [each for each in image_labels if each.region is not None]
+    missing = [each for each in visible if each.label == "" and each.reason != ONE_CHANNEL]
+    if len(missing) < max(FEWEST_IMAGES, MANY_WITHOUT * len(visible)):
+        return []
+    (reason, count) = Counter(each.reason for each in missing).most_common(1)[0]
+    first = next(each for each in missing if each.reason == reason)
+    return [
+        f"{len(missing)} of {len(visible)} images that show the terrain ahead have no label (most "
+        f"often: {reason}, {count}, the first is {first.image or f'that of {first.stamp_s} s'}); "
+        "where no image supports the terrain for long, it is unknown. Look at them: where they "
+        "are clear all the same, run the rest apart (--from SECONDS)"
     ]
 
 

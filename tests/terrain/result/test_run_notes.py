@@ -11,6 +11,7 @@ from terrain.classification.answer import COLOURLESS, ONE_CHANNEL
 from terrain.classification.likeness.likeness import Likeness
 from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
+from terrain.image_labels.image_labeller import LOST_DETAILS
 from terrain.result.run_notes import event_lines, run_notes
 
 TABLE = TerrainParameters("icr", {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0})
@@ -124,6 +125,18 @@ def test_where_most_images_are_unknown_the_path_is_to_be_compared():
     assert not any("--no-vision" in one for one in run_notes(fewer))
 
 
+def test_images_that_were_not_classified_although_they_show_the_terrain_are_counted():
+    of = starting(["grass"] * 40 + [""] * 30)
+    for row, image_label in enumerate(of.watcher.image_labels):
+        image_label.region, image_label.image = object(), f"images/{row}.jpg"
+        image_label.reason = LOST_DETAILS if row >= 45 else ""
+    (hint,) = run_notes(of)
+    assert hint.startswith("30 of 70 images that show the terrain ahead have no label (most often:")
+    assert f"{LOST_DETAILS}, 25, the first is images/45.jpg)" in hint
+    del of.watcher.image_labels[50:]
+    assert run_notes(of) == []
+
+
 def test_a_terrain_without_a_table_is_named():
     (hint,) = run_notes(result(initial="gravle"))
     assert "'gravle' has no table" in hint
@@ -144,8 +157,12 @@ def test_names_that_differ_by_capitals_or_signs_alone_are_named_together():
 def starting(labels):
     """A run whose set begins with grass, and the first labels of its images."""
     of = result("grass", ("grass", "gravel"), classes=["grass", "gravel"])
-    of.watcher.image_labels = [SimpleNamespace(label=label, reason="") for label in labels]
+    of.watcher.image_labels = [seen_label(label) for label in labels]
     return of
+
+
+def seen_label(label, reason=""):
+    return SimpleNamespace(label=label, reason=reason, region=None, image="", stamp_s=0.0)
 
 
 def test_many_refused_poses_are_named():
@@ -157,9 +174,7 @@ def test_many_refused_poses_are_named():
 def seen_labels(*labels_and_reasons):
     """A result whose images got these labels."""
     of = result(classes=["gravel"])
-    of.watcher.image_labels = [
-        SimpleNamespace(label=label, reason=reason) for label, reason in labels_and_reasons
-    ]
+    of.watcher.image_labels = [seen_label(*each) for each in labels_and_reasons]
     return of
 
 
