@@ -19,6 +19,7 @@ from odometry.checks.imu.attitude import attitude
 from odometry.checks.imu.gyroscope import gyroscope
 from odometry.checks.imu.gyroscope_by_poses import gyroscope_scale
 from odometry.checks.imu.rate_wander import headings_wander
+from odometry.checks.imu.turned_axes import turned_axes
 from odometry.checks.imu.turning import turning
 from odometry.checks.parts.part_changes import part_changes
 from odometry.checks.poses.coarse_yaw import coarse_yaw
@@ -122,6 +123,7 @@ CHECKS: tuple[Check, ...] = (
     pose_outages,
     empty_cells,
     attitude,
+    turned_axes,
     settings,
     columns,
     settings_names,

@@ -140,4 +140,5 @@ CATALOGUE: dict[str, str] = {
     "attitude_swapped": "roll and pitch exchanged",
     "imu_unit": "accelerations in g, without gravity, or of the opposite sign",
     "imu_mount": "an IMU upside down or on its side",
+    "imu_axes": "an IMU sideways or backwards, by accelerations",
 }

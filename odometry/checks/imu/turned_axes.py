@@ -1,0 +1,115 @@
+"""Accelerations along axes that are turned about z: an IMU mounted sideways or backwards."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from odometry.arrays import FloatArray
+from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.finding import Finding, Level
+from odometry.feel.signals import ACCEL, in_robot_frame
+
+BLOCK_S = 0.5  # longer than vibration and stamps that are off, shorter than slopes and legs
+TURNED = math.radians(45.0)
+SIGMAS, UNSURE_RAD = 4.0, math.radians(15.0)
+SIZES = 0.4, 2.5  # of measured accelerations over those of the treads: else another unit, or slip
+PARTS, FEWEST = 20, 100  # of a jackknife; blocks
+ALIKE = 0.7  # correlation of turns by gyroscope and treads: else one of them is at fault
+ROUNDS = 5
+
+
+def turned_axes(evidence: Evidence) -> Iterator[Finding]:
+    """accel_x and accel_y against what treads and gyroscope say of the motion.
+
+    On wheels a robot accelerates along x by the change of its speed, and to the left by speed
+    times yaw rate, whatever robot it is. Both as one complex number, measured over expected, have
+    the angle by which the axes are turned. What slopes add changes slowly: differences from block
+    to block hold little of it.
+    """
+    found = _accelerations(evidence)
+    if found is None or evidence.yaw_rate is None:
+        return
+    expected, measured = (np.diff(values) for values in found)
+    known = np.isfinite(expected) & np.isfinite(measured)
+    if known.sum() < FEWEST:
+        return
+    expected, measured = expected[known], measured[known]
+    factor = _factor(expected, measured)
+    parts = np.array_split(np.arange(len(expected)), PARTS)
+    left_out = [_factor(np.delete(expected, p), np.delete(measured, p)) for p in parts]
+    angles = np.angle(np.array(left_out) / factor)
+    sigma = math.sqrt((PARTS - 1) / PARTS * float(np.sum(angles**2)))
+    angle = -float(np.angle(factor))
+    is_sure = sigma < UNSURE_RAD and abs(angle) - SIGMAS * sigma > TURNED / 2
+    if not is_sure or abs(angle) < TURNED or not SIZES[0] < abs(factor) < SIZES[1]:
+        return
+    yield _finding(evidence, angle, sigma)
+
+
+def _finding(evidence: Evidence, angle: float, sigma: float) -> Finding:
+    degrees = f"{math.degrees(angle):.0f} +- {math.degrees(sigma):.0f} degrees"
+    table = evidence.run.odometry if evidence.run.imu is None else evidence.run.imu
+    stated = evidence.run.sensors.imu_rad
+    remedy = "Turn accel_x and accel_y to the robot's axes"
+    if evidence.run.imu is not None:
+        remedy = f"State [sensors] imu = [0, 0, {angle:.2f}], or the quarter turn next to it"
+    if stated is not None:
+        remedy = f"Correct [sensors] imu by a turn of {angle:.2f} rad about z"
+    return Finding(
+        "imu_axes",
+        Level.NOTE,
+        f"accelerations of {table.file.name} agree with treads and gyroscope once their axes are "
+        f"turned by {degrees} about z",
+        "The IMU is mounted sideways or backwards. Yaw rates are right all the same; models of "
+        "inertia by measured accelerations would err, and feel beside runs of another mounting",
+        remedy,
+    )
+
+
+def _accelerations(evidence: Evidence) -> tuple[FloatArray, FloatArray] | None:
+    """Expected and measured (N,) in blocks, x + i y; None without them, or where turns differ."""
+    run = evidence.run
+    table = run.odometry if run.imu is None else run.imu
+    columns = {name: table[name] for name in ACCEL if name in table}
+    if run.imu is not None and run.sensors.imu_rad is not None:
+        columns = in_robot_frame(columns, np.array(run.sensors.imu_rad))
+    if not {"accel_x", "accel_y"} <= set(columns) or evidence.yaw_rate is None:
+        return None
+    at_s = evidence.stamps_s
+    edges_s = np.arange(at_s[0], at_s[-1], BLOCK_S)
+    forward = evidence.speeds_m_s.mean(axis=1)
+    difference = _means(at_s, np.diff(evidence.speeds_m_s, axis=1)[:, 0], edges_s)
+    rates = _means(*evidence.yaw_rate, edges_s)
+    known = np.isfinite(difference) & np.isfinite(rates)
+    turns = difference[known], rates[known]
+    if known.sum() < FEWEST or min(map(np.ptp, turns)) == 0 or np.corrcoef(*turns)[0, 1] < ALIKE:
+        return None
+    change = np.diff(np.interp(edges_s, at_s, forward)) / BLOCK_S
+    expected = change + 1j * _means(at_s, forward, edges_s) * rates
+    x, y = (_means(table.stamps_s, columns[name], edges_s) for name in ("accel_x", "accel_y"))
+    return expected, x + 1j * y
+
+
+def _means(stamps_s: FloatArray, values: FloatArray, edges_s: FloatArray) -> FloatArray:
+    """Means (N - 1,) of values between edges (N,); NaN where there are none."""
+    block = np.searchsorted(edges_s, stamps_s, side="right") - 1
+    count = len(edges_s) - 1
+    used = (block >= 0) & (block < count) & np.isfinite(values)
+    sums, numbers = (
+        np.bincount(block[used], weights, minlength=count) for weights in (values[used], None)
+    )
+    return np.where(numbers > 0, sums / np.maximum(numbers, 1), np.nan)
+
+
+def _factor(expected: FloatArray, measured: FloatArray) -> complex:
+    """Complex factor of expected in measured (N,), bumps weighed down."""
+    columns = np.column_stack([expected, expected.conj()])  # axes that are mirrored, apart
+    weights = np.ones(len(expected))
+    for _ in range(ROUNDS):
+        by = weights[:, None] * columns
+        fitted = np.linalg.lstsq(by, weights * measured, rcond=None)[0]
+        off = np.abs(measured - columns @ fitted)
+        limit = 1.5 * float(np.median(off))
+        weights = 1 / np.sqrt(np.maximum(1.0, off / limit)) if limit > 0 else weights
+    return complex(fitted[0])
