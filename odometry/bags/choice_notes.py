@@ -8,7 +8,7 @@ from odometry.bags.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no
 from odometry.bags.pose_rows import turns
 from odometry.bags.robot_messages import RobotMessages
 from odometry.bags.topic import Topic
-from odometry.bags.topic_guess import candidates
+from odometry.bags.topic_guess import COMMANDS, candidates
 from odometry.bags.topic_roles import TopicMap
 
 MOST_NAMED = 6  # topics in a sentence
@@ -17,9 +17,21 @@ MOST_NAMED = 6  # topics in a sentence
 def wheel_notes(topics: Mapping[str, Topic], topic_map: Mapping[str, Any], taken: str) -> list[str]:
     """What is to be said of the topic that was taken as wheel speeds."""
     topic = topics[taken]
+    commands = _commands(taken)
     if topic.message_type not in TWISTS:
+        return commands
+    return [*commands, *_separation(taken, topic_map), *_kind_notes(topic, topic_map)]
+
+
+def _commands(taken: str) -> list[str]:
+    """That wheel speeds are those that were asked for."""
+    if not COMMANDS.search(taken):
         return []
-    return [*_separation(taken, topic_map), *_kind_notes(topic, topic_map)]
+    return [
+        f"wheel speeds: {taken} holds commands by its name: the robot follows them later, on a "
+        "slope or under load not in full, and in an emergency stop not at all. All of this is "
+        "taken for slip and for the robot; name measured speeds where the bag has any"
+    ]
 
 
 def _separation(taken: str, topic_map: Mapping[str, Any]) -> list[str]:

@@ -1,9 +1,10 @@
 """Estimates beside a receiver without yaw whose positions scatter and wander.
 
-    python -m tests.studies.estimation_receiver [--first-seed 0] [--seeds 60]
+    python -m tests.studies.estimation_receiver [--first-seed 0] [--seeds 60] [--smooth]
 
 Clean drives (`tests/blind/any_robot.py`), their poses replaced by true places with white noise of
-0.2 to 1.5 m and errors that last for 10 to 120 s (Gauss-Markov), none to twice the white ones. A
+0.2 to 1.5 m and errors that last for 10 to 120 s (Gauss-Markov), none to twice the white ones;
+with --smooth such a white noise makes the errors that last, and a thirtieth of it scatters. A
 row for each: the parameter that is farthest off at the end in deviations, the learned
 y_left - y_right over the true one, and the share of the second half in which the place, and the
 yaw, is off by more than three deviations; of the place also the root mean square in deviations
@@ -24,7 +25,7 @@ SELDOM = ("gnss", "slow slam")  # true places too seldom to draw lines between t
 SHARES = (0.0, 0.5, 1.0, 2.0)  # of the white noise: the errors that last
 
 
-def with_receiver(run, truth, rng):
+def with_receiver(run, truth, rng, *, smooth=False):
     """The run beside a receiver: white noise, rate and share of the errors that last."""
     rate_hz, white_m = rng.choice([1.0, 2.0, 5.0]), np.exp(rng.uniform(*np.log([0.2, 1.5])))
     share, lasts_s = rng.choice(SHARES), rng.uniform(10.0, 120.0)
@@ -36,7 +37,8 @@ def with_receiver(run, truth, rng):
         wander[0], pushes = rng.normal(), np.sqrt(1 - keeps**2) * rng.normal(size=len(at_s))
         for i in range(1, len(at_s)):
             wander[i] = keeps * wander[i - 1] + pushes[i]
-        off_m = white_m * (rng.normal(size=len(at_s)) + share * wander)
+        scatter, lasting = (1 / 30, 1.0) if smooth else (1.0, share)
+        off_m = white_m * (scatter * rng.normal(size=len(at_s)) + lasting * wander)
         columns[axis] = np.interp(at_s, truth["t"], truth[axis]) + off_m
     ordered = {name: columns[name] for name in ("t", "x", "y", "yaw")}
     return replace(run, pose=Table(run.pose.file, ordered, np.arange(2, len(at_s) + 2))), share
@@ -61,6 +63,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seeds", type=int, default=60)
+    parser.add_argument("--smooth", action="store_true")
     options = parser.parse_args()
     warnings.simplefilter("ignore")
     rows = []
@@ -68,7 +71,9 @@ def main():
         robot, run, truth = clean_drive(seed)
         if len(truth) > 20000 or robot.source in SELDOM:
             continue
-        received, share = with_receiver(run, truth, np.random.default_rng([seed, 3]))
+        received, share = with_receiver(
+            run, truth, np.random.default_rng([seed, 3]), smooth=options.smooth
+        )
         rows.append((run.yaw_rate is not None, share, *figures(received, truth, robot)))
         print(seed, robot.way, robot.source, *(f"{value:.2f}" for value in rows[-1]), flush=True)
     table = np.array(rows)

@@ -103,3 +103,15 @@ def test_the_separation_of_a_twist_is_said_where_the_user_does_not(tmp_path):
     (tmp_path / "again").mkdir()
     _, said = import_of(bag, tmp_path / "again", wheels__separation=TRACK_M)
     assert not any("wheel_separation_multiplier" in note for note in said.notes)
+
+
+@pytest.mark.parametrize(("topic", "is_said"), [("/cmd_vel", True), ("/wheels/velocity", False)])
+def test_commands_that_are_taken_for_wheel_speeds_are_said(topic, is_said, tmp_path):
+    def add(bag, row):
+        t_s, left, right, *_ = row
+        twist = bag.twist((left + right) / 2, (right - left) / TRACK_M)
+        kind = "geometry_msgs/msg/TwistStamped"
+        bag.add(topic, kind, t_s, bag.message(kind, header=bag.header(t_s), twist=twist))
+
+    _, said = import_of(drive(add, wheels=False), tmp_path, wheels__topic=topic)
+    assert any("holds commands" in note for note in said.notes) == is_said
