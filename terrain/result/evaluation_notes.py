@@ -100,8 +100,7 @@ def evaluated_with(second: SecondReplay) -> str:
     withheld = second.withheld
     return (
         f"{len(withheld.judged)} poses, one every {JUDGED_EVERY_S:g} s: a second replay was not "
-        f"given them, nor any pose of the last {SILENT_S:g} s before "
-        f"({withheld.poses} poses in all)."
+        f"given them, nor any pose of the last {SILENT_S:g} s before ({withheld.poses} in all)."
     )
 
 

@@ -145,12 +145,8 @@ class Switch:
         kept = tuple(known for known in self.place_labels if known.travel_m >= oldest_m)
         before = self._before(oldest_m)
         place_labels = (*kept, place_label)
-        return replace(
-            self,
-            before=before,
-            place_labels=place_labels,
-            place_beliefs=self._settle(place_labels, before),
-        )
+        beliefs = self._settle(place_labels, before)
+        return replace(self, before=before, place_labels=place_labels, place_beliefs=beliefs)
 
     def without_labels(self) -> "Switch":
         """The switch after a stretch of unknown motion: no labelled place is known any more."""

@@ -61,11 +61,7 @@ KEYS = {
     help="What is taken from which topic; options override it.",
 )
 @click.option("--wheels", metavar="TOPIC", help="Measured wheel speeds.")
-@click.option(
-    "--left",
-    metavar="NAMES",
-    help="Left wheels, with commas: joints, places in an array, or paths of fields.",
-)
+@click.option("--left", metavar="NAMES", help="Left wheels, by commas: joints, places or paths.")
 @click.option("--right", metavar="NAMES", help="Right wheels.")
 @click.option("--left-sign", type=click.Choice(["1", "-1"]), help="-1: they count backwards.")
 @click.option("--right-sign", type=click.Choice(["1", "-1"]), help="-1: they count backwards.")
