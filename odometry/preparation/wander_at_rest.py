@@ -8,6 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.watches.rest_watch import STILL_M_S
 from odometry.run import Run
+from odometry.windows.spans import runs_of
 
 SETTLED_S = 2.0  # after that a robot that braked, and positions that are late, are stationary too
 PIECE_S = (3.0, 20.0)  # shortest and longest time at rest that counts as one
@@ -27,12 +28,7 @@ def wander_sigma_m(run: Run, stamps_s: FloatArray, positions_m: FloatArray) -> f
     the pieces counts: at a few of them the robot may have been pushed. Errors that are forgotten
     after `LASTING_S` and walk so fast have the standard deviation that is given.
 
-    Parameters
-    ----------
-    run : Run
-    stamps_s : (M,)
-        Ascending.
-    positions_m : (M, 2)
+    Positions (M, 2) [m] are at ascending stamps (M,).
 
     Returns
     -------
@@ -59,9 +55,8 @@ def wander_sigma_m(run: Run, stamps_s: FloatArray, positions_m: FloatArray) -> f
 def _at_rest(run: Run) -> Iterator[tuple[float, float]]:
     """From when to when the treads stand for long, without the time in which a robot settles."""
     at_s = run.odometry.stamps_s
-    still = (np.abs(run.odometry.stack("v_left", "v_right")) <= STILL_M_S).all(axis=1)
-    changes = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]])))
-    for first, end in changes.reshape(-1, 2):
+    still = np.abs(run.odometry.stack("v_left", "v_right")).max(axis=1) <= STILL_M_S
+    for first, end in runs_of(still):
         from_s, to_s = at_s[first] + SETTLED_S, at_s[end - 1]
         if to_s - from_s >= PIECE_S[0]:
             yield float(from_s), float(to_s)
