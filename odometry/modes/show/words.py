@@ -90,7 +90,7 @@ def _open_words(followed: Followed) -> Iterator[str]:
     """Between which modes the answer by motion lies while it is undetermined."""
     sets = followed.left_open(followed.motion)
     said = [
-        f"{' or '.join(names)} {percent(share)} of that time"
+        f"{' or '.join(names)} for {percent(share)} of that time"
         for names, share in list(sets.items())[:FEW]
         if len(names) < len(followed.mode_set.names) and share >= LEAST_OPEN
     ]

@@ -116,8 +116,9 @@ def _one(
         write_modes_report(result, part, checks_made())
     for title, said in zip(("Answer", "How sure", "What to do"), in_short(result), strict=True):
         click.echo(f"{title}: {said}")
-    for sentence in sentences(result):
-        click.echo(sentence)
+    detected, *others = sentences(result)
+    for sentence in [detected, *others] if result.score(result.motion).detections else others:
+        click.echo(sentence)  # without stretches to detect it has the shares of the answer again
     print_written(output.out)
     click.echo(f"Next: open {output.out / 'report.html'}")
 

@@ -53,7 +53,8 @@ def test_modes_between_which_the_answer_lies_are_named():
         ("a", "b", "c"): pytest.approx(1 / 3),
     }
     assert made.candidates(known).tolist() == ["a", *["b or c"] * 4, *["a or b or c"] * 2, "a"]
-    assert "While undetermined, it is b or c 67 % of that time." in sentences(made)
+    said = "While undetermined, the candidates are b or c for 67 % of that time."
+    assert said in sentences(made)
     score = made.score(known)  # half a second of 3.5 that the last stamp does not last
     assert (score.narrowed_of_all, score.missed_of_all) == pytest.approx((0.0, 2.0 / 3.5))
     (first, second) = content_of(made)["motion"]["undetermined_between"]

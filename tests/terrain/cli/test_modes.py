@@ -4,6 +4,7 @@ import csv
 import json
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -106,6 +107,14 @@ def test_one_run_is_answered_in_words_and_files(make, models, tmp_path):
     wrote = answer.stdout.split(f"Wrote to {out}: ")[1].splitlines()[0].split(", ")
     assert set(wrote) == files_of(out)
     assert answer.stdout.rstrip().endswith(f"Next: open {out / 'report.html'}")
+
+
+def test_shares_of_a_run_without_labels_are_printed_once(make, models, tmp_path):
+    run = make("plain")
+    (Path(run) / "truth.csv").unlink()
+    answer = invoke(run, "--models", models, "--out", tmp_path / "out")
+    assert answer.exit_code == 0, answer.output
+    assert re.findall(r"ice \d+ %", answer.stdout) == ["ice 50 %"]
 
 
 def test_how_sure_one_must_be_is_an_option(make, models, tmp_path):
