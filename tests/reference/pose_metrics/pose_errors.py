@@ -113,9 +113,11 @@ def statistics(errors: FloatArray) -> Statistics:
 
 
 def _errors(left_over: FloatArray) -> PoseErrors:
+    turns = left_over[:, :3, :3]
     return PoseErrors(
         np.linalg.norm(left_over[:, :3, 3], axis=-1),
-        Rotation.from_matrix(left_over[:, :3, :3]).magnitude(),
+        # SciPy 1.14 makes no rotations of nothing
+        Rotation.from_matrix(turns).magnitude() if len(turns) else np.empty(0),
         np.linalg.norm(left_over - np.eye(4), axis=(-2, -1)),
     )
 

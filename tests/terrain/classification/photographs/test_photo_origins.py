@@ -17,7 +17,7 @@ def photograph(tmp_path, rng):
     def write(name, *, size=(60, 40), quality=90, camera="", suffix=".jpg", lens=None):
         exif = Image.Exif()
         if lens:
-            exif.get_ifd(ExifTags.IFD.Exif).update(lens)
+            exif[ExifTags.IFD.Exif] = lens
         if camera:
             exif[ExifTags.Base.Model] = camera
         path = tmp_path / f"{name}{suffix}"
