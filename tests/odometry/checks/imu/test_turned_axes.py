@@ -19,11 +19,12 @@ def lively(seed=0, seconds=200):
     return with_imu(drive(speed, turn, seed=seed), speed, turn, seed)
 
 
-def with_imu(run, speed, turn, seed):
-    """Accelerations of the motion, of a slope and of vibration, in imu.csv."""
+def with_imu(run, speed, turn, seed, ahead_m=0.0, left_m=0.0):
+    """Accelerations of the motion at a place, of a slope and of vibration, in imu.csv."""
     t, rng = run.odometry.stamps_s, np.random.default_rng(seed)
-    x = np.gradient(speed, PERIOD_S) + 0.8 * np.sin(t / 40)
-    y = speed * turn + 0.5 * np.cos(t / 31)
+    turning = np.gradient(turn, PERIOD_S)
+    x = np.gradient(speed, PERIOD_S) + 0.8 * np.sin(t / 40) - ahead_m * turn**2 - left_m * turning
+    y = speed * turn + 0.5 * np.cos(t / 31) - left_m * turn**2 + ahead_m * turning
     noise = 0.5 * rng.normal(size=(3, len(t)))
     columns = {"t": t, "accel_x": x + noise[0], "accel_y": y + noise[1]}
     columns["accel_z"] = 9.81 + noise[2]
@@ -73,6 +74,22 @@ def test_a_drive_that_is_short_or_even_says_nothing():
     assert not found(mounted(with_imu(drive(even, 0 * even), even, 0 * even, 0), 90))
 
 
+@pytest.mark.parametrize("radius_m", [0.6, None], ids=["arcs of one radius", "of many"])
+@pytest.mark.parametrize("place_m", [(1.0, 0.0), (-1.3, 0.5), (0.0, -1.0)])
+def test_an_imu_far_from_the_centre_is_not_turned(place_m, radius_m):
+    at_s = PERIOD_S * np.arange(6000)
+    turn = 0.4 + 0.35 * np.sin(at_s / 2.3)
+    speed = 0.4 + 0.2 * np.sin(at_s / 3) if radius_m is None else radius_m * turn
+    assert not found(with_imu(drive(speed, turn), speed, turn, 0, *place_m))
+
+
+def test_an_imu_far_from_the_centre_that_is_turned_is_noted():
+    run, at_s = lively(), PERIOD_S * np.arange(4000)
+    turn = 0.4 * np.sin(at_s / 2.1) + 0.3 * np.sin(at_s / 0.9)
+    speed = 0.9 + 0.35 * np.sin(at_s / 1.3) + 0.2 * np.sin(at_s / 4)
+    assert found(mounted(with_imu(run, speed, turn, 0, -1.0, 0.5), 90))
+
+
 def test_noise_alone_says_nothing():
     run = lively()
     rng = np.random.default_rng(1)
@@ -92,5 +109,6 @@ def test_accelerations_of_odometry_are_looked_at_where_there_is_no_imu_file():
     columns = {**run.odometry.columns}
     columns |= {name: run.imu[name] for name in ("accel_x", "accel_y")}
     run = replace(run, imu=None, odometry=replace(run.odometry, columns=columns))
+    run = replace(run, settings={"sensors": {"imu": [0.0, 0.0, 0.0]}})  # of imu.csv
     (finding,) = found(run)
     assert finding.remedy == "Turn accel_x and accel_y to the robot's axes"
