@@ -103,8 +103,8 @@ def _wandering(
         float(stamps_s[0]),
         float(stamps_s[-1]),
         "positions wander while the treads stand: their errors last (satellites, a receiver that "
-        f"smooths). The sigmas of x and y hold {lasting_m:.2g} m of them, if they last for a "
-        "minute or so",
+        f"smooths), unless something else moves the robot. The sigmas of x and y hold "
+        f"{lasting_m:.2g} m of them, if they last for a minute or so",
         (lasting_m,),
     )
     return replace(config, lasting_sigma_m=lasting_m), (event,)

@@ -8,14 +8,15 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.watches.rest_watch import STILL_M_S
 from odometry.run import Run
+from odometry.windows.interpolated import interpolated
 from odometry.windows.spans import runs_of
 
 SETTLED_S = 2.0  # after that a robot that braked, and positions that are late, are stationary too
 PIECE_S = (3.0, 20.0)  # shortest and longest time at rest that counts as one
-FEWEST = 4  # positions of a piece, pieces, ...
-STOPS = 3  # ... and stops: at one the robot may have been pushed
+FEWEST = 4  # positions of a piece
+STOPS = 3  # at one the robot may have been pushed
 LASTING_S = 60.0  # how long errors of satellites and their receivers last
-SIGMAS = 2.0  # of the median, by which ways must be more than scatter makes them
+SIGMAS = 3.0  # of the median, by which ways must be more than scatter makes them
 MEDIAN = math.log(2.0)  # of an exponential distribution of mean 1, as of squares in a plane
 
 
@@ -26,16 +27,21 @@ def wander_sigma_m(run: Run, stamps_s: FloatArray, positions_m: FloatArray) -> f
     the second half of a piece of such time is an error of the positions. As a random walk it has
     a variance of a third of the walk's over the piece, beside that of the scatter. The median over
     the pieces counts: at a few of them the robot may have been pushed. Errors that are forgotten
-    after `LASTING_S` and walk so fast have the standard deviation that is given.
+    after `LASTING_S` and walk so fast have the standard deviation that is given. Positions
+    that repeat the one before, or were interpolated, do not count: a receiver that holds its
+    position at rest says nothing.
 
     Positions (M, 2) [m] are at ascending stamps (M,).
 
     Returns
     -------
     float or None
-        0 where scatter explains the ways within `SIGMAS`. None where there are fewer than
-        `FEWEST` pieces at `STOPS` stops.
+        0 where scatter explains the ways within `SIGMAS`. None where fewer than `STOPS` stops have
+        a piece of `FEWEST` positions.
     """
+    new = np.append(True, (np.diff(positions_m, axis=0) != 0).any(axis=1))
+    new &= ~interpolated(stamps_s, positions_m)
+    stamps_s, positions_m = stamps_s[new], positions_m[new]
     stops = [
         [
             _walks_m2_s(stamps_s[piece], positions_m[piece])
@@ -45,7 +51,7 @@ def wander_sigma_m(run: Run, stamps_s: FloatArray, positions_m: FloatArray) -> f
         for span_s in _at_rest(run)
     ]
     walks = np.array([each for stop in stops for each in stop])
-    if len(walks) < FEWEST or sum(map(bool, stops)) < STOPS:
+    if sum(map(bool, stops)) < STOPS:
         return None
     way, scatter = np.median(walks, axis=0) / (MEDIAN, 1.0)
     is_sure = way > scatter * (1 + SIGMAS / (MEDIAN * math.sqrt(len(walks))))

@@ -11,7 +11,7 @@ def lasting_note(result: RunResult) -> list[str]:
     """Say that nothing shows whether positions without yaw, of a receiver, wander.
 
     Those that scatter, or wander at rest, have such errors in their sigmas. Without stops a
-    receiver that smooths looks exact.
+    receiver that smooths looks exact, and so does one that holds its position at each of them.
     """
     run = result.run
     if run.pose is None or not lacks_yaw(run) or result.config.filter.lasting_sigma_m:
@@ -22,6 +22,7 @@ def lasting_note(result: RunResult) -> list[str]:
         return []
     return [
         "whether errors of the positions last (satellites) cannot be determined: it takes three "
-        "stops of five seconds. sigma_x and sigma_y of the estimate hold none; where the receiver "
-        "is no RTK, state them: [filter] lasting_sigma_m of --config"
+        "stops of ten seconds, and positions that are not held there. sigma_x and sigma_y of the "
+        "estimate hold none; where the receiver is no RTK, state them: [filter] lasting_sigma_m of "
+        "--config"
     ]

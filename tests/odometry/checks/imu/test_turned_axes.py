@@ -19,9 +19,10 @@ def lively(seed=0, seconds=200):
     return with_imu(drive(speed, turn, seed=seed), speed, turn, seed)
 
 
-def with_imu(run, speed, turn, seed, ahead_m=0.0, left_m=0.0):
+def with_imu(run, speed, turn, seed, place_m=(0.0, 0.0)):
     """Accelerations of the motion at a place, of a slope and of vibration, in imu.csv."""
     t, rng = run.odometry.stamps_s, np.random.default_rng(seed)
+    ahead_m, left_m = place_m
     turning = np.gradient(turn, PERIOD_S)
     x = np.gradient(speed, PERIOD_S) + 0.8 * np.sin(t / 40) - ahead_m * turn**2 - left_m * turning
     y = speed * turn + 0.5 * np.cos(t / 31) - left_m * turn**2 + ahead_m * turning
@@ -80,14 +81,14 @@ def test_an_imu_far_from_the_centre_is_not_turned(place_m, radius_m):
     at_s = PERIOD_S * np.arange(6000)
     turn = 0.4 + 0.35 * np.sin(at_s / 2.3)
     speed = 0.4 + 0.2 * np.sin(at_s / 3) if radius_m is None else radius_m * turn
-    assert not found(with_imu(drive(speed, turn), speed, turn, 0, *place_m))
+    assert not found(with_imu(drive(speed, turn), speed, turn, 0, place_m))
 
 
 def test_an_imu_far_from_the_centre_that_is_turned_is_noted():
     run, at_s = lively(), PERIOD_S * np.arange(4000)
     turn = 0.4 * np.sin(at_s / 2.1) + 0.3 * np.sin(at_s / 0.9)
     speed = 0.9 + 0.35 * np.sin(at_s / 1.3) + 0.2 * np.sin(at_s / 4)
-    assert found(mounted(with_imu(run, speed, turn, 0, -1.0, 0.5), 90))
+    assert found(mounted(with_imu(run, speed, turn, 0, (-1.0, 0.5)), 90))
 
 
 def test_noise_alone_says_nothing():
