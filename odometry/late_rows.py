@@ -35,6 +35,7 @@ SLACK = 0.02
 # Of the share of other rows that have a new value: rows that follow close and have one more rarely
 # are copies.
 SAME = 0.1
+SURELY = 10.0  # rows in which two columns would be new by chance
 
 
 class LateRows(NamedTuple):
@@ -66,7 +67,8 @@ def late_rows(table: Table) -> LateRows | None:
     """Rows of a steady sensor that came late by chance, some together; None where they did not.
 
     They are as many as the time asks for: over a longer time they are off by no more than over a
-    shorter one. Rows that repeat the values of the one before were not measured with it.
+    shorter one. Rows that repeat the values of the one before were not measured with it, and merged
+    rows of several sensors have times of their own.
 
     Examples
     --------
@@ -91,7 +93,7 @@ def late_rows(table: Table) -> LateRows | None:
         at_once_s = float(np.sum(lasts_s[close[1:]]))
         if at_once_s > AT_ONCE * (stamps_s[-1] - stamps_s[0]) or not is_late(stamps_s, found, rows):
             continue
-        return None if repeat_values(table, close) else found
+        return None if repeat_values(table, close) or _are_merged(table) else found
     return None
 
 
@@ -159,3 +161,14 @@ def repeat_values(table: Table, close: BoolArray) -> bool:
             return False
         change |= bool(others.any())
     return change
+
+
+def _are_merged(table: Table) -> bool:
+    """Whether most rows are new in one of two columns, and none in both: the latest of each."""
+    columns = [v for name, v in table.columns.items() if name != "t" and v.dtype.kind == "f"]
+    steps = np.diff(np.array(columns), axis=1)
+    new = (np.isfinite(steps) & (steps != 0)).astype(np.float64)
+    rows, counts, both = new.shape[1], new.sum(axis=1), new @ new.T
+    by_chance = np.outer(counts, counts) / rows
+    in_turn = (by_chance > SURELY) & (both < SAME * by_chance)
+    return bool((in_turn & (np.add.outer(counts, counts) - both > MOSTLY * rows)).any())

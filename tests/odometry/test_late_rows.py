@@ -1,11 +1,13 @@
 """Rows of a steady sensor with stamps of their arrival."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from odometry.late_rows import SLACK, even_stamps_s, late_rows
 from tests.odometry.arrivals import after_stalls, by_chance, stamped
-from tests.odometry.checks.drives import PERIOD_S, winding
+from tests.odometry.checks.drives import PERIOD_S, table, winding
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +34,13 @@ def test_even_stamps_are_nearly_those_of_the_measurement(rows, change):
     assert late.period_s == pytest.approx(PERIOD_S, rel=0.01)
     assert np.std(late.even_s - rows.stamps_s) < 0.3 * np.std(arrived_s - rows.stamps_s)
     assert late.late_s == pytest.approx(arrived_s - late.even_s)
+
+
+def test_treads_that_are_measured_in_turn_are_no_merged_logs(rows):
+    row = np.arange(len(rows))
+    left, right = rows["v_left"][row // 6 * 6], rows["v_right"][np.abs(row - 3) // 6 * 6]
+    slow = replace(rows, columns={**rows.columns, "v_left": left, "v_right": right})
+    assert late_rows(stamped(slow, by_chance(rows.stamps_s))) is not None
 
 
 def test_even_stamps_are_the_earliest_that_later_rows_allow():
@@ -86,6 +95,21 @@ def twice(rows):
     return stamped(rows, rows.stamps_s[each] + 2e-3 * (np.arange(len(each)) % 2), each)
 
 
+def merged(rows):
+    """The latest of treads at 20 Hz and of a gyroscope at 50 Hz, both with stamps that are off."""
+    rng, columns = np.random.default_rng(0), {}
+    of_treads, of_gyroscope = (
+        np.sort(even_s + rng.exponential(0.004, len(even_s)))
+        for even_s in (np.arange(0, 119, PERIOD_S), np.arange(0, 119, 0.02))
+    )
+    stamps_s = np.unique(np.concatenate([of_treads, of_gyroscope]))[4:]
+    for name in ("v_left", "v_right", "gyro_z"):
+        own_s = of_gyroscope if name == "gyro_z" else of_treads
+        latest_s = own_s[np.searchsorted(own_s, stamps_s, side="right") - 1]
+        columns[name] = np.interp(latest_s, rows.stamps_s, rows[name])
+    return table("odometry.csv", t=stamps_s, **columns)
+
+
 def now_and_then(rows):
     kept = np.flatnonzero(rows.stamps_s % 5 < 1)
     return stamped(rows, rows.stamps_s[kept], kept)
@@ -100,6 +124,7 @@ OTHERS = {
     "changes of 0.02 m/s": lambda rows: of_changes(rows, 0.02),
     "changes of 0.1 m/s": lambda rows: of_changes(rows, 0.1),
     "each row twice": twice,
+    "two logs merged": merged,
     "now and then": now_and_then,
     "a second lost": without_a_second,
     "set ahead": lambda rows: stamped(rows, rows.stamps_s + 3.0 * (rows.stamps_s > 60)),
