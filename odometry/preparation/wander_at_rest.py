@@ -70,8 +70,8 @@ def _at_rest(run: Run) -> Iterator[tuple[float, float]]:
 
 def _pieces(stamps_s: FloatArray, from_s: float, to_s: float) -> list[IntArray]:
     """Rows of the pieces of a time at rest."""
-    rows = np.flatnonzero((stamps_s >= from_s) & (stamps_s <= to_s))
-    return np.array_split(rows, max(1, math.ceil((to_s - from_s) / PIECE_S[1])))
+    first, end = np.searchsorted(stamps_s, from_s), np.searchsorted(stamps_s, to_s, side="right")
+    return np.array_split(np.arange(first, end), max(1, math.ceil((to_s - from_s) / PIECE_S[1])))
 
 
 def _walks_m2_s(stamps_s: FloatArray, positions_m: FloatArray) -> tuple[float, float]:
