@@ -27,6 +27,7 @@ OF_LOST = frozenset(
 OF_REPEATED_STAMPS = OF_OTHER_TIMES | {
     *("poses_unrelated", "pose_outliers", "frozen_poses", "dropped_speeds", "smoothed_poses"),
     *("tread_late", "treads_held", "odometry_gap", "interpolated_poses", "yaw_jumps"),
+    *("yaw_late", "positions_late"),
 }
 
 # Cause: what follows from it.

@@ -71,3 +71,15 @@ def test_rows_microseconds_apart_are_in_no_unit_of_hours(driven):
     assert [found.name for found in check_recording(late).findings] == ["uneven_stamps"]
     hours = stamped(driven.odometry, driven.odometry.stamps_s / 3600)
     assert check_recording(replace(driven, odometry=hours)).findings[0].name == "stamp_unit"
+
+
+@pytest.mark.parametrize("digits", [2, 3, 4])
+@pytest.mark.parametrize("seed", range(3))
+def test_delays_are_not_judged_where_late_rows_share_stamps_and_were_dropped(driven, digits, seed):
+    rows = driven.odometry
+    arrived_s = np.round(by_chance(rows.stamps_s, seed=seed), digits)
+    stamps_s, first = np.unique(arrived_s, return_index=True)
+    left = stamped(rows, stamps_s, first)
+    left = replace(left, repeated_lines=np.delete(rows.lines, first))
+    found = check_recording(replace(driven, odometry=left)).findings
+    assert [each.name for each in found] == ["repeated_stamps"]
