@@ -93,21 +93,36 @@ def _turns(run: str, means: FloatArray) -> DriveTurns:
     return DriveTurns(run, gain, information, float(left @ left), len(means))
 
 
+def with_unknown_turns(turns: Mapping[str, Sequence[DriveTurns]]) -> tuple[str, ...]:
+    """Names of the terrains whose runs do not show by how much the treads turn the robot.
+
+    They go straight on, or all their turns are of one speed and radius: the yaw rate is then that
+    of any gain beside a bias of the gyroscope.
+    """
+    return tuple(
+        name
+        for name, of in turns.items()
+        if max(map(_sigmas, (of, *([one] for one in of)))) < LEAST_SIGMAS
+    )
+
+
 def turn_notes(turns: Mapping[str, Sequence[DriveTurns]]) -> Iterator[str]:
     """Sentences of terrains that hardly turn, and of drives that turn against their treads.
 
     And of those that turn as another terrain does.
     """
-    determined = dict[str, list[DriveTurns]]()
-    for name, of in turns.items():
-        if max(map(_sigmas, (of, *([one] for one in of)))) < LEAST_SIGMAS:
-            yield (
-                f"The runs of {name} hardly turn: by how much its treads turn the robot is not "
-                "known, and names beside it say little. Record turns to both sides, or leave it "
-                "out."
-            )
-            continue
-        determined[name] = [one for one in of if _sigmas([one]) >= LEAST_SIGMAS]
+    unknown = with_unknown_turns(turns)
+    for name in unknown:
+        yield (
+            f"The runs of {name} hardly turn, or turn alike all the time: by how much its treads "
+            "turn the robot is not known, and names beside it say little. Record turns to both "
+            "sides, or leave it out."
+        )
+    determined = {
+        name: [one for one in of if _sigmas([one]) >= LEAST_SIGMAS]
+        for name, of in turns.items()
+        if name not in unknown
+    }
     found = [
         _reversed(name, one) or _contradiction(name, one, determined)
         for name, of in determined.items()

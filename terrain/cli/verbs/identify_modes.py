@@ -1,6 +1,7 @@
 """`terrain-odometry identify-modes`: models of terrains or slipping wheels from recorded runs."""
 
 import shlex
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -80,7 +81,11 @@ def identify_modes(
     """
     import numpy as np
 
-    from odometry.modes.identify.drive_turns import drive_turns, turn_notes
+    from odometry.modes.identify.drive_turns import (
+        drive_turns,
+        turn_notes,
+        with_unknown_turns,
+    )
     from odometry.modes.identify.identify_traction import identify_traction_modes
     from odometry.modes.identify.identify_velocity import identify_velocity_modes
     from odometry.modes.mode_pairs import pairs
@@ -113,12 +118,16 @@ def identify_modes(
     else:
         runs = with_turns(runs)
         modes = identify_traction_modes(runs, paper=paper, show_progress=True)
+    turns = drive_turns(runs)
+    unknown = () if shared else with_unknown_turns(turns)
     if isinstance(modes, TractionModes):
-        _print_traction(modes)
+        _print_traction(modes, unknown)
     else:
-        _print_velocity(modes)
-    _print_alike(pairs(modes, runs))
-    for note in turn_notes(drive_turns(runs)):
+        _print_velocity(modes, unknown)
+    if len(modes.names) == 1:
+        click.echo("Note: there is one mode: `modes` needs two or more", err=True)
+    _print_alike(tuple(of for of in pairs(modes, runs) if not set(of.names) & set(unknown)))
+    for note in turn_notes(turns):
         click.echo(f"Note: {note}", err=True)
     said = ((shared, "shared model"), (common_noise, "common noise"), (paper, "as in Salvi 2024"))
     variant = "".join(f", {words}" for given, words in said if given)
@@ -130,8 +139,11 @@ def identify_modes(
     click.echo(f"Next: terrain-odometry modes RUN --models {shlex.quote(str(out))} --out modes")
 
 
-def _print_velocity(modes: "VelocityModes") -> None:
-    """Print what steady turns give, how fast, and what the models leave of the measurements."""
+def _print_velocity(modes: "VelocityModes", unknown: Collection[str]) -> None:
+    """Print what steady turns give, how fast, and what the models leave of the measurements.
+
+    Of modes whose turns are `unknown` the last alone.
+    """
     click.echo(
         "Steady yaw rate per difference of tread speeds, the effective track, the lag, steady "
         "speed per speed of both treads, and what the models leave (standard deviations):"
@@ -144,14 +156,18 @@ def _print_velocity(modes: "VelocityModes") -> None:
         modes.names, gains, -1 / modes.A[:, 1, 1], sigmas, strict=True
     ):
         turn = (gain[1, 1] - gain[1, 0]) / 2
-        cells = (turn, 1 / turn if turn else float("inf"), lag, gain[0].sum(), *sigma)
-        rows.append((name, *(f"{cell:.3f}" for cell in cells)))
+        response = [f"{of:.3f}" for of in (turn, 1 / turn, lag, gain[0].sum())] if turn else []
+        shown = response if response and name not in unknown else ["-"] * 4
+        rows.append((name, *shown, *(f"{of:.3f}" for of in sigma)))
     print_table(rows)
     click.echo(f"Errors of the models last {modes.errors_last_s:.2f} s.")
 
 
-def _print_traction(modes: "TractionModes") -> None:
-    """Print the shares of requested speed and turn rate, and the noise."""
+def _print_traction(modes: "TractionModes", unknown: Collection[str]) -> None:
+    """Print the shares of requested speed and turn rate, and the noise.
+
+    No shares of modes whose turns are `unknown`.
+    """
     import numpy as np
 
     from odometry.modes.traction import requested, twists_of
@@ -170,7 +186,7 @@ def _print_traction(modes: "TractionModes") -> None:
     ]
     shares = np.column_stack([modes.k[:, 0], modes.m, *tight, modes.lag_s])
     rows += [
-        (name, *(f"{share:.3f}" for share in of))
+        (name, *("-" if name in unknown else f"{share:.3f}" for share in of))
         for name, of in zip(modes.names, shares, strict=True)
     ]
     print_table(rows)
@@ -186,9 +202,6 @@ def _print_traction(modes: "TractionModes") -> None:
 
 def _print_alike(found: "tuple[Pair, ...]") -> None:
     """Say which modes differ little, and how long it takes to distinguish them."""
-    if not found:
-        click.echo("Note: there is one mode: `modes` needs two or more", err=True)
-        return
     equal = [pair for pair in found if pair.seconds > ALIKE_S]
     for pair in equal[:PAIRS] or found[:1]:
         both = " and ".join(pair.names)

@@ -101,6 +101,26 @@ def test_drives_that_contradict_their_names_are_noted(make, out):
     assert "nearer to tar22 of tar" in answer.stderr
 
 
+@pytest.mark.parametrize("ratio", [1.0, 0.6, -1.0])
+def test_of_a_drive_that_turns_alike_all_the_time_no_turns_are_shown(make, tmp_path, out, ratio):
+    """Straight on, one circle, on the spot: its gain would be any number, -9 m of track say."""
+    rng = np.random.default_rng(3)
+    stamps_s = 0.05 * np.arange(600)
+    right = 0.5 + rng.normal(0, 0.002, 600)
+    left = ratio * right + rng.normal(0, 0.002, 600)
+    gyro = (1 - ratio) * 0.5 + rng.normal(0, 0.005, 600)
+    tables = {"odometry": {"t": stamps_s, "v_left": left, "v_right": right, "gyro_z": gyro}}
+    settings = {"robot": {"track_width": 0.5}, "run": {"terrain": "mud"}}
+    write_run_folder(tmp_path / "mud", settings, tables)
+    answer = invoke(tmp_path / "mud", *(make(name, turn, name) for name, turn in TURNS.items()),
+                    "--out", out)  # fmt: skip
+    assert answer.exit_code == 0, answer.output
+    (mud,) = (line.split() for line in answer.stdout.splitlines() if line.split()[0] == "mud")
+    assert mud[1:5] == ["-"] * 4
+    assert "ice and tar are the most similar" in answer.stdout
+    assert "The runs of mud hardly turn, or turn alike all the time" in answer.stderr
+
+
 def test_one_mode_is_not_enough(grounds, out):
     answer = invoke(grounds[0], "--out", out)
     assert answer.exit_code == 0, answer.output
