@@ -14,7 +14,15 @@ from odometry.models.inputs import Inputs, joined
 from odometry.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.horizons import spatial_horizons
-from odometry.windows.record import STATIONARY, Record, record_of, straddling, summed, words
+from odometry.windows.record import (
+    STATIONARY,
+    STUCK,
+    Record,
+    record_of,
+    straddling,
+    summed,
+    words,
+)
 from odometry.windows.stuck import without_stuck
 
 STANDING_M = 1e-3  # less wheel travel than this is no evidence on a model
@@ -114,12 +122,13 @@ def windows_of(runs: Sequence[Run], config: WindowConfig) -> Windows:
     """
     if not runs:
         raise WindowError("no run was given; expected one or more")
+    records = [without_stuck(record_of(run, config)) for run in runs]
     parts = [
-        _windows_of_record(without_stuck(record_of(run, config)), name, config)
-        for run, name in zip(runs, run_names(runs), strict=True)
+        _windows_of_record(record, name, config)
+        for record, name in zip(records, run_names(runs), strict=True)
     ]
     if not sum(map(len, parts)):
-        raise WindowError(_no_window(runs, config, summed(part.left_out for part in parts)))
+        raise WindowError(_no_window(records, config, summed(part.left_out for part in parts)))
     return laid_together(parts)
 
 
@@ -190,16 +199,19 @@ def _windows_of_stretch(measure: FloatArray, horizon: float, config: WindowConfi
     return spatial_horizons(measure, horizon, config.stride * horizon)
 
 
-def _no_window(runs: Sequence[Run], config: WindowConfig, left_out: Counter[str]) -> str:
+def _no_window(records: Sequence[Record], config: WindowConfig, left_out: Counter[str]) -> str:
     wanted = f"{config.horizon_s:g} s" if config.horizon_s else f"{config.travel_m:g} m"
-    longest = max(float(run.wheel_travel_m[-1]) for run in runs)
+    driven_m = max(float(np.ptp(record.travel_m)) for record in records)
+    measured_m = max(float(np.ptp(record.travel_m[record.pose_samples])) for record in records)
+    between = f", {measured_m:.2f} m between poses" if driven_m - measured_m > STANDING_M else ""
+    drive = "record a drive" if driven_m <= STANDING_M else "choose a shorter horizon"
     return "; ".join(
         part
         for part in (
-            f"no window of {wanted} in {', '.join(run.name for run in runs)}: the longest run has "
-            f"{longest:.2f} m of wheel travel",
+            f"no window of {wanted} in {', '.join(record.run.name for record in records)}: the "
+            f"longest run has {driven_m:.2f} m of wheel travel{between}",
             words(left_out),
-            "choose a shorter horizon",
+            "" if STUCK in left_out else drive,
         )
         if part
     )

@@ -64,3 +64,26 @@ def test_a_run_without_poses_is_named(winding):
     blind = replace(winding, folder=Path("blind"), pose=None)
     with pytest.raises(WindowError, match=r"blind: 0 measured poses .*pose\.csv"):
         windows_of([winding, blind], WindowConfig())
+
+
+def test_travel_that_no_pose_measures_is_told_apart(winding):
+    """Poses of the first second alone: a shorter horizon finds windows in what these measure."""
+    early = winding.pose.stamps_s < winding.pose.stamps_s[0] + 1.0
+    pose = {name: of[early] for name, of in winding.pose.columns.items()}
+    short = replace(winding, pose=replace(winding.pose, columns=pose))
+    between = travel_between(winding, *short.pose.stamps_s[[0, -1]])
+    with pytest.raises(WindowError, match="choose a shorter horizon") as caught:
+        windows_of([short], WindowConfig(horizon_m=20.0))
+    assert f"m of wheel travel, {between:.2f} m between poses; " in str(caught.value)
+
+
+@pytest.mark.parametrize(("held", "words"), [("treads", "record a drive"), ("poses", "stuck")])
+def test_no_horizon_helps_a_robot_that_stays(winding, held, words):
+    table = winding.odometry if held == "treads" else winding.pose
+    names = ("v_left", "v_right") if held == "treads" else ("x", "y", "yaw")
+    columns = {**table.columns, **{name: np.zeros(len(table)) for name in names}}
+    still = replace(table, columns=columns)
+    run = replace(winding, **{"odometry" if held == "treads" else "pose": still})
+    with pytest.raises(WindowError, match=words) as caught:
+        windows_of([run], WindowConfig())
+    assert "choose a shorter horizon" not in str(caught.value)
