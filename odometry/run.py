@@ -109,9 +109,9 @@ class Run:
 
     @property
     def terrain(self) -> str | None:
-        """The terrain of the whole run, where run.toml names one."""
-        name: str | None = self.settings.get("run", {}).get("terrain")
-        return name
+        """The terrain of the whole run, without spaces around it, where run.toml names one."""
+        name: str = self.settings.get("run", {}).get("terrain") or ""
+        return name.strip() or None
 
     @property
     def sensors(self) -> Sensors:

@@ -98,6 +98,7 @@ class Identification:
             for words in (
                 *(open_.words() for open_ in found.fit.undetermined),
                 *undetermined_by_positions(found.fit, self.robot),
+                *undetermined_by_spread(found.fit, self.robot),
             )
         )
 
@@ -170,6 +171,24 @@ def undetermined_by_positions(fit: Fit, robot: Robot) -> tuple[str, ...]:
                     f"{parameter.unit}, more than its ordinary size ({size:.2g}) to either side"
                 )
     return tuple(found)
+
+
+def undetermined_by_spread(fit: Fit, robot: Robot) -> tuple[str, ...]:
+    """Parameters that a set would state with more than their size, a clause each.
+
+    A few windows fit any noise: their spread then says little, and Student's t makes intervals
+    wide. Nothing of a fit to positions, which `undetermined_by_positions` judges.
+    """
+    if fit.noise is not None:
+        return ()
+    sizes = dict(zip(fit.values, fit.model.ordinary_sizes(robot), strict=True))
+    stated = np.sqrt(np.diag(fit.normal_covariance)).tolist()
+    return tuple(
+        f"{name}: 95 % interval {fit.intervals[name].low:.3g} to {fit.intervals[name].high:.3g}, "
+        f"by {freedom:.1f} degrees of freedom: add runs"
+        for name, sigma, freedom in zip(fit.names, stated, fit.freedom.tolist(), strict=True)
+        if name not in fit.open_names and sigma > sizes[name]
+    )
 
 
 def contradicted(fit: Fit, ideal: WindowErrors) -> tuple[str, ...]:

@@ -21,3 +21,11 @@ def test_the_name_in_the_run_goes_before_the_given_one(make_run):
 
 def test_what_nobody_names_is_unknown(make_run):
     assert row_terrains(Run.read(make_run())).tolist() == ["unknown"] * 3
+
+
+@pytest.mark.parametrize(("name", "expected"), [("", "ground"), (" ", "ground"), (" ice ", "ice")])
+def test_a_name_is_read_as_in_a_cell(make_run, name, expected):
+    """An empty one is none, and spaces around it are no part of it."""
+    settings = f'[robot]\ntrack_width = 0.4\n[run]\nterrain = "{name}"\n'
+    run = with_named_terrain(Run.read(make_run(settings=settings)), None)
+    assert row_terrains(run).tolist() == [expected] * 3

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.errors import IdentificationError
 from odometry.identification.identify import identify
 from odometry.identification.report import STEADY_S, report
 
@@ -51,3 +52,20 @@ def test_nothing_is_said_where_nothing_has_an_interval(found):
     fit = replace(found.fit, windows=few, names=(), covariance=np.empty((0, 0)))
     lines = report("gravel", replace(found, fit=replace(fit, freedom=np.empty(0))))
     assert not any("slip wanders" in line for line in lines)
+
+
+def test_windows_that_fit_any_noise_determine_nothing(winding, stated):
+    """Two windows of one drive: their residuals are small, and the intervals are of metres."""
+    rows = winding.wheel_travel_m < 2.3 * stated.travel_m
+    columns = {name: of[rows] for name, of in winding.odometry.columns.items()}
+    odometry = replace(winding.odometry, columns=columns, lines=winding.odometry.lines[rows])
+    noise_m = np.random.default_rng(0).normal(0, stated.position_sigma_m, len(winding.pose))
+    pose = replace(winding.pose, columns={**winding.pose.columns, "x": winding.pose["x"] + noise_m})
+    noisy = replace(winding, pose=pose)
+    brief = identify([replace(noisy, odometry=odometry)], "icr", window_config=stated)
+    (of,) = brief.terrains.values()
+    assert len(of.fit.windows) == 2
+    assert of.fit.undetermined == ()
+    with pytest.raises(IdentificationError, match=r"y_left: 95 % interval .* degrees of freedom"):
+        brief.require_determined()
+    assert identify([noisy], "icr", window_config=stated).left_open == ()
