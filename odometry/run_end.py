@@ -85,7 +85,10 @@ def _refused(replay: Replay) -> list[FilterEvent]:
 
 
 def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
-    """The estimate ends farther from the poses than the ideal differential drive."""
+    """The estimate ends farther from the poses than the ideal differential drive.
+
+    And is off by more than these poses scatter: where the robot stands, both are in their noise.
+    """
     if run.pose is None or replay.estimates[-1].course is not None:
         return []
     measured = run.pose.stack("x", "y")
@@ -96,11 +99,12 @@ def _off_at_end(run: Run, replay: Replay) -> list[FilterEvent]:
     if len(last) < LAST_POSES:
         return []
     ideal = replay.differential_drive(run.robot.track_width)
-    ours_m, ideal_m = (
-        float(np.median(np.hypot(*(one.at(stamps_s[last]).poses[:, :2] - measured[last]).T)))
-        for one in (estimate, ideal)
+    ours, of_ideal = (
+        one.at(stamps_s[last]).poses[:, :2] - measured[last] for one in (estimate, ideal)
     )
-    if ours_m <= ideal_m:
+    ours_m, ideal_m = (float(np.median(np.hypot(*off.T))) for off in (ours, of_ideal))
+    in_noise = np.hypot(*ours.mean(axis=0)) <= np.sqrt(ours.var(axis=0).sum())
+    if ours_m <= ideal_m or in_noise:
         return []
     text = (
         f"the estimate ends {ours_m:.2f} m from the last {LAST_POSES} poses, the ideal drive "

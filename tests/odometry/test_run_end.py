@@ -13,6 +13,8 @@ from odometry.estimation.kept_estimates import EVERY
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.gyroscope_bias import bias_error, bias_events
 from odometry.pipeline import ConstantTerrain, replay
+from odometry.run_end import _off_at_end
+from odometry.trajectory import Trajectory
 from tests.odometry.preparation.test_pose_delay import run_of, table
 
 
@@ -177,3 +179,21 @@ def test_an_estimate_that_ends_worse_than_the_ideal_drive_says_so():
     )
     assert "off_at_end" in found
     assert "do not trust" in found["off_at_end"].text
+
+
+@pytest.mark.parametrize(("off_m", "is_said"), [(0.015, False), (0.1, True)])
+def test_an_end_within_the_scatter_of_the_poses_is_not_off(off_m, is_said):
+    """The robot stands, where the ideal drive has it exactly; poses lie 2 cm around."""
+    run = run_of(0.0)
+    x, y = np.random.default_rng(3).normal(0, 0.02, (2, len(run.pose)))
+    stamps_s = run.odometry.stamps_s
+    at_m = [np.tile([of, 0.0, 0.0], (len(stamps_s), 1)) for of in (off_m, 0.0)]
+    ours, ideal = (Trajectory(stamps_s, poses) for poses in at_m)
+    done = SimpleNamespace(
+        estimates=[SimpleNamespace(course=None)],
+        stamps_s=stamps_s,
+        trajectory=lambda: ours,
+        differential_drive=lambda _: ideal,
+    )
+    said = [event.kind for event in _off_at_end(posed(run, x=x, y=y), done)]
+    assert said == ["off_at_end"] * is_said
