@@ -1,5 +1,6 @@
 """What to know of a result before its numbers are used: names, images, refused poses."""
 
+import shlex
 from collections import Counter
 from collections.abc import Sequence
 
@@ -60,12 +61,21 @@ def event_lines(result: RunResult) -> list[str]:
 
 
 def _unnamed(result: RunResult) -> list[str]:
-    """Say that nothing names the terrain of a set of several."""
-    if result.source != "none" or result.initial_terrain != UNKNOWN:
+    """Say that nothing names the terrain of a set of several, or that the run names another."""
+    own, initial, of_set = result.run.terrain, result.initial_terrain, result.parameters.terrains
+    if result.source != "none":
+        return []
+    if own not in (None, UNKNOWN, initial) and list(of_set) == [initial]:
+        return [
+            f"run.toml names the terrain {own!r}, the parameter set has {initial!r} alone: this is "
+            "in force, and what is learned is said of it. Where both are one terrain, give both "
+            f"one name; else start without its parameters: --terrain {shlex.quote(own)}"
+        ]
+    if initial != UNKNOWN:
         return []
     return [
         "the terrain is unknown throughout: there is no source of terrain (no vision, no other), "
-        f"and the parameter set has {', '.join(result.parameters.terrains)}. --terrain names one"
+        f"and the parameter set has {', '.join(of_set)}. --terrain names one"
     ]
 
 

@@ -8,6 +8,7 @@ from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from terrain.main_job import run_odometry
+from terrain.result.run_notes import run_notes
 from tests.terrain.test_run_odometry import SET
 
 
@@ -18,8 +19,13 @@ def test_the_first_terrain_is_the_one_named_else_the_sets_only_one_else_the_runs
     world.write_toml(folder / "run.toml", robot=world.robot, run={"terrain": "sand"})
     assert run_odometry(folder, parameters=SET, terrain="mud").initial_terrain == "mud"
     only = ParameterSet(dict(list(SET.terrains.items())[:1]))
-    assert run_odometry(folder, parameters=only).initial_terrain == "boards"
-    assert run_odometry(folder, parameters=SET).initial_terrain == "sand"
+    of_another = run_odometry(folder, parameters=only)
+    assert of_another.initial_terrain == "boards"
+    (note,) = (note for note in run_notes(of_another) if "'sand'" in note)
+    assert "the parameter set has 'boards' alone: this is in force" in note
+    own = run_odometry(folder, parameters=SET)
+    assert own.initial_terrain == "sand"
+    assert not any("run.toml names" in note for note in run_notes(own))
     assert run_odometry(folder).initial_terrain == "sand"
     assert run_odometry(curvy_run).initial_terrain == "ground"
 
