@@ -139,7 +139,7 @@ def in_short(followed: Followed) -> tuple[str, str, str]:
 
 def _in_force(followed: Followed) -> str:
     track = followed.last_track
-    answers = followed.answers(track)
+    answers = followed.answers(track)[:-1]  # the last stamp lasts for no time
     named = np.flatnonzero(answers != UNDETERMINED)
     if not len(named):
         return "nothing that the motion distinguishes: undetermined all the time."
@@ -168,7 +168,8 @@ def _how_sure(followed: Followed) -> str:
 
 
 def _fit_said(followed: Followed) -> str:
-    named = f"a mode is named where its probability is {percent(followed.config.sure)} or more"
+    sure = f"{100 * followed.config.sure:.12g} %"  # 99.99999 %, not 100 %
+    named = f"a mode is named where its probability is {sure} or more"
     doubt = _first_doubt(followed)
     if doubt is not None:
         return f"{named}; {doubt.reason}: there no mode is named."

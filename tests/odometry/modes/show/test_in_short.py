@@ -33,10 +33,17 @@ def small_misfit(lasts):
         (["b", "a", "a"], "a at the end, since 0.5 s. "),
         (["b", "a", "", ""], "a at last, until 0.5 s; undetermined after that. "),
         (["", ""], "nothing that the motion distinguishes"),
+        (["", "", "a"], "nothing that the motion distinguishes"),  # it lasts for no time
     ],
 )
 def test_an_answer_is_in_force_at_the_end_where_it_is_given_there(most, words):
     assert in_short(by_hand(most))[0].startswith(words)
+
+
+@pytest.mark.parametrize(("sure", "said"), [(0.9, "90 %"), (0.9999999, "99.99999 %")])
+def test_the_probability_that_is_asked_is_said_as_it_is(sure, said):
+    answers = replace(by_hand(["a", "a"]), config=ModesConfig(sure=sure))
+    assert f"where its probability is {said} or more" in in_short(answers)[1]
 
 
 def test_few_answers_are_said_and_the_others_are_counted():
