@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.by_terrain import by_terrain
 from odometry.gap.prepare.calibration import Calibration, calibrated
+from odometry.gap.prepare.determined import require_determined
 from odometry.gap.prepare.given_base import check_given, given_notes
 from odometry.gap.prepare.held_out import Apart, held_out_pieces
 from odometry.gap.prepare.outliers import Outliers
@@ -89,7 +90,10 @@ def prepared(
         [scene_of(run, config) for run in calibration],
         *scenes_of(measured, holdout, config),
     )
-    known = by_terrain(calibrated(known_scenes, model, robot, config, given), known_scenes, config)
+    known = calibrated(known_scenes, model, robot, config, given)
+    if given is None:
+        require_determined(known, whole)
+    known = by_terrain(known, known_scenes, config)
     numbers = None if holdout else held_out_pieces(whole, config)
     raw_scenes, scenes, outliers = without_outliers(
         (measured, holdout), (whole, held), numbers, (known_scenes, known), config
