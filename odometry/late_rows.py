@@ -6,13 +6,11 @@ before the next one was: the earliest of all times that later rows allow is that
 envelope of the stamps over their numbers.
 """
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.run import Run
 from odometry.table import Table
 
 CLOSE = 0.2  # of the period: no steady sensor measures twice so soon
@@ -95,12 +93,6 @@ def late_rows(table: Table) -> LateRows | None:
             continue
         return None if repeat_values(table, close) or _are_merged(table) else found
     return None
-
-
-def with_stamps(run: Run, name: str, stamps_s: FloatArray) -> Run:
-    """The run with other stamps (N,) in one of its tables."""
-    table = getattr(run, name)
-    return replace(run, **{name: replace(table, columns={**table.columns, "t": stamps_s})})
 
 
 def even_stamps_s(stamps_s: FloatArray, period_s: float) -> FloatArray:

@@ -1,7 +1,7 @@
 """One recording: its robot, its tables, its frames in time order; and names of several runs."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -193,3 +193,9 @@ def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
     longest = {key: f"{name}, track width {key[1]:g} m" for key, name in full.items()}
     choices = (short, full, longest)
     return next(labels for labels in choices if len(set(labels.values())) == len(keys))
+
+
+def with_stamps(run: Run, name: str, stamps_s: FloatArray) -> Run:
+    """The run with other stamps (N,) in one of its tables."""
+    table = getattr(run, name)
+    return replace(run, **{name: replace(table, columns={**table.columns, "t": stamps_s})})

@@ -14,7 +14,7 @@ from scipy.stats import t
 
 from odometry.arrays import FloatArray, usual_period_s
 from odometry.errors import OdometryError
-from odometry.run import Run
+from odometry.run import Run, with_stamps
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.gyroscope_yaw import PathShape
@@ -44,8 +44,7 @@ class Timing(NamedTuple):
         """The run with positions and yaw rates at the stamps at which they were measured."""
         rates = run.yaw_rate
         if self.positions_late_s and run.pose is not None:
-            columns = {**run.pose.columns, "t": run.pose.stamps_s - self.positions_late_s}
-            run = replace(run, pose=replace(run.pose, columns=columns))
+            run = with_stamps(run, "pose", run.pose.stamps_s - self.positions_late_s)
         if self.rates_early_s and rates is not None:
             stamps_s, lines = rates.stamps_s + self.rates_early_s, np.arange(len(rates.stamps_s))
             columns = {"t": stamps_s, "gyro_z": rates.yaw_rate_rad_s}

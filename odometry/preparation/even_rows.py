@@ -6,9 +6,9 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.timing import TOGETHER, lags_of
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
-from odometry.late_rows import LateRows, late_rows, with_stamps
+from odometry.late_rows import LateRows, late_rows
 from odometry.preparation.row_rates import EARLY_S
-from odometry.run import Run
+from odometry.run import Run, with_stamps
 
 SIGMAS = 3.0  # of the lag beyond that
 NEARLY_ALL = 0.95  # share of the rows, which are late by as much at least as all may be

@@ -1,7 +1,5 @@
 """Poses whose stamps are late: by a delay that is given, or by one that is certain."""
 
-from dataclasses import replace
-
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.late_positions import path_delay_s
@@ -9,7 +7,7 @@ from odometry.checks.stamps.short_delay import short_delay
 from odometry.checks.stamps.timing import found_in, lags_of, timing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
-from odometry.run import Run
+from odometry.run import Run, with_stamps
 from odometry.table import Table
 
 FINDING, PARTS = "pose_late", {"yaw_late", "positions_late"}
@@ -82,10 +80,9 @@ def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:
 
 
 def _moved(run: Run, pose: Table, delay_s: float, text: str) -> Moved:
-    columns = {**pose.columns, "t": pose.stamps_s - delay_s}
     taken = "they were taken at the stamps at which they were measured"
     event = _event(pose, f"the poses are late: {text}; {taken}", delay_s)
-    return replace(run, pose=replace(pose, columns=columns)), (event,)
+    return with_stamps(run, "pose", pose.stamps_s - delay_s), (event,)
 
 
 def _event(pose: Table, text: str, *delay_s: float) -> FilterEvent:

@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import ComplexArray, FloatArray, IntArray
 from odometry.sensors import gyroscope_of
 from odometry.windows.record import Record
 
-ComplexArray = NDArray[np.complex128]
 LARGEST_BIAS_RAD_S = 0.04
 COARSE, FINE = 41, 21  # numbers of biases
 LENGTH_M = 80.0  # of the pieces of path that are compared: of 5 to 80 m the best on 19 recordings

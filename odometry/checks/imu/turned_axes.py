@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.feel.signals import ACCEL, in_robot_frame
+from odometry.run import Run
+from odometry.table import Table
 
 BLOCK_S = 0.5  # longer than vibration and stamps that are off, shorter than slopes and legs
 TURNED = math.radians(45.0)
@@ -21,7 +22,6 @@ ALIKE = 0.7  # correlation of turns by gyroscope and treads: else one of them is
 # 35 real recordings 0.34 at most.
 APART = 0.8
 ROUNDS = 5
-ComplexArray = NDArray[np.complex128]
 
 
 def turned_axes(evidence: Evidence) -> Iterator[Finding]:
@@ -34,7 +34,7 @@ def turned_axes(evidence: Evidence) -> Iterator[Finding]:
     slopes add changes slowly: differences from block to block hold little of it.
     """
     found = _accelerations(evidence)
-    if found is None or evidence.yaw_rate is None:
+    if found is None:
         return
     changes = np.diff(found, axis=1)
     changes = changes[:, np.isfinite(changes).all(axis=0)]
@@ -54,7 +54,6 @@ def turned_axes(evidence: Evidence) -> Iterator[Finding]:
 
 def _finding(evidence: Evidence, angle: float, sigma: float) -> Finding:
     degrees = f"{math.degrees(angle):.0f} +- {math.degrees(sigma):.0f} degrees"
-    table = evidence.run.odometry if evidence.run.imu is None else evidence.run.imu
     if evidence.run.imu is None:
         remedy = "Turn accel_x and accel_y to the robot's axes"
     elif evidence.run.sensors.imu_rad is None:
@@ -64,12 +63,17 @@ def _finding(evidence: Evidence, angle: float, sigma: float) -> Finding:
     return Finding(
         "imu_axes",
         Level.NOTE,
-        f"accelerations of {table.file.name} agree with treads and gyroscope once their axes are "
-        f"turned by {degrees} about z",
+        f"accelerations of {_table(evidence.run).file.name} agree with treads and gyroscope once "
+        f"their axes are turned by {degrees} about z",
         "The IMU is mounted sideways or backwards. Yaw rates are right all the same; models of "
         "inertia by measured accelerations would err, and feel beside runs of another mounting",
         remedy,
     )
+
+
+def _table(run: Run) -> Table:
+    """The one that has the accelerations."""
+    return run.odometry if run.imu is None else run.imu
 
 
 def _accelerations(evidence: Evidence) -> ComplexArray | None:
@@ -78,7 +82,7 @@ def _accelerations(evidence: Evidence) -> ComplexArray | None:
     In blocks, x + i y; None without them, or where turns differ.
     """
     run = evidence.run
-    table = run.odometry if run.imu is None else run.imu
+    table = _table(run)
     columns = {name: table[name] for name in ACCEL if name in table}
     if run.imu is not None and run.sensors.imu_rad is not None:
         columns = in_robot_frame(columns, np.array(run.sensors.imu_rad))

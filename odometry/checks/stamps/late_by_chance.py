@@ -7,8 +7,8 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
-from odometry.late_rows import LateRows, late_rows, with_stamps
-from odometry.run import Run
+from odometry.late_rows import LateRows, late_rows
+from odometry.run import Run, with_stamps
 from odometry.windows.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned

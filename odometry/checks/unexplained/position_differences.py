@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from odometry.arrays import BoolArray, FloatArray, IntArray
+from odometry.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
 from odometry.checks.poses.steps import reckoned, without_window_changes
@@ -101,7 +100,6 @@ def _spans(evidence: Evidence) -> PositionSpans | None:
     return PositionSpans(stamps_s[first], apart_m, driven_m, moved_m)
 
 
-ComplexArray = npt.NDArray[np.complex128]
 PATH_SPAN_S, STEP_S = 20.0, 0.25  # long enough to have a shape, short enough for dead reckoning
 LEAST_PATH_M = 2.0  # that a robot drives in a span
 LEAST_PATH_SPANS = 2

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, POSITION, YAW, YAW_RATE, ContactDynamics
-from odometry.simulation.contact.friction import ComplexArray
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.one_vehicle import one_vehicle
 from odometry.simulation.contact.slope import Ground, Plane, gravity

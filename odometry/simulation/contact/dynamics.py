@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.errors import SimulationError
-from odometry.simulation.contact.friction import ComplexArray, FrictionLaw, cross
+from odometry.simulation.contact.friction import FrictionLaw, cross
 from odometry.simulation.contact.slope import Ground, Tilt, gravity, tilt
 from odometry.simulation.contact.vehicle import ContactVehicle
 

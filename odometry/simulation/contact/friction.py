@@ -4,11 +4,9 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 
-ComplexArray = NDArray[np.complex128]
 GRAVITY_M_S2 = 9.80665
 
 

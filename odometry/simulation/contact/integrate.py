@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.simulation.contact.dynamics import VELOCITY, YAW_RATE, ContactDynamics, Contacts
-from odometry.simulation.contact.friction import ComplexArray, cross
+from odometry.simulation.contact.friction import cross
 
 GAMMA = float(1 - np.sqrt(0.5))
 LONGEST_STEP_S = 0.005

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from math import expm1, sqrt
 from typing import NamedTuple
 
-from odometry.arrays import FloatArray
-from odometry.simulation.contact.friction import ComplexArray, Coulomb, Shear
+from odometry.arrays import ComplexArray, FloatArray
+from odometry.simulation.contact.friction import Coulomb, Shear
 
 Memory = Sequence[complex]
 

@@ -10,9 +10,9 @@ from math import sqrt, tanh
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.simulation.contact.dynamics import ContactDynamics
-from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray
+from odometry.simulation.contact.friction import GRAVITY_M_S2
 from odometry.simulation.contact.integrate import GAMMA
 from odometry.simulation.contact.one_contacts import Forces, Memory, Sums, contacts_of, forces_of
 from odometry.simulation.contact.slope import Ground, Plane, Zones

@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from odometry.arrays import FloatArray
-from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray, dot
+from odometry.arrays import ComplexArray, FloatArray
+from odometry.simulation.contact.friction import GRAVITY_M_S2, dot
 
 
 class Tilt(NamedTuple):

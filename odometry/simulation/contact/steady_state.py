@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, ComplexArray, FloatArray
 from odometry.simulation.contact.dynamics import (
     FOLLOWED_FORCE,
     POSITION,
@@ -10,7 +10,7 @@ from odometry.simulation.contact.dynamics import (
     YAW_RATE,
     ContactDynamics,
 )
-from odometry.simulation.contact.friction import GRAVITY_M_S2, ComplexArray
+from odometry.simulation.contact.friction import GRAVITY_M_S2
 from odometry.simulation.contact.integrate import LONGEST_STEP_S, rosenbrock_step
 from odometry.simulation.contact.slope import HeldAttitude
 from odometry.simulation.contact.vehicle import ContactVehicle

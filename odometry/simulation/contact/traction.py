@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import FloatArray, IntArray
+from odometry.arrays import ComplexArray, FloatArray, IntArray
 from odometry.errors import SimulationError
 from odometry.simulation.contact.dynamics import MEMORY, ContactDynamics
-from odometry.simulation.contact.friction import ComplexArray, FrictionLaw
+from odometry.simulation.contact.friction import FrictionLaw
 from odometry.simulation.contact.vehicle import ContactVehicle
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from odometry.arrays import FloatArray
+from odometry.arrays import ComplexArray, FloatArray
 from odometry.config import read_toml
 from odometry.errors import SimulationError
-from odometry.simulation.contact.friction import ComplexArray, Coulomb, FrictionLaw, Shear
+from odometry.simulation.contact.friction import Coulomb, FrictionLaw, Shear
 
 LARGEST = 1e6  # kg, m or kg m2 of a vehicle
 SMALLEST = 1e-4  # of a friction coefficient, or a length [m] over which friction builds up

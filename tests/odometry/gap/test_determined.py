@@ -17,13 +17,22 @@ def calibration_of(run):
     return calibrated([dense_windows_of(run, 2.0)], Icr(), run.robot, GapConfig())
 
 
+def refusal_of(calibration, measured):
+    """What is said of a base that is refused; nothing of one that is taken."""
+    try:
+        require_determined(calibration, measured)
+    except GapError as error:
+        return str(error)
+    return ""
+
+
 @pytest.fixture(scope="module")
 def winding(make_scene):
     return make_scene(600, duration_s=60.0, top_m_s=0.5)
 
 
 def test_turns_of_many_radii_determine_it(winding):
-    require_determined(calibration_of(winding.run), [winding])
+    assert refusal_of(calibration_of(winding.run), [winding]) == ""
 
 
 @pytest.mark.parametrize(
@@ -51,7 +60,7 @@ def test_a_drive_of_one_kind_does_not(winding, left, right, words):
         odometry=replace(run.odometry, columns={"t": t, **treads}),
         pose=replace(run.pose, columns={"t": pose_s, **pose}),
     )
-    with pytest.raises(GapError, match="the calibration runs do not determine 'icr'") as caught:
-        require_determined(calibration_of(alike), [winding])
-    assert words in str(caught.value)
-    require_determined(calibration_of(alike), [dense_windows_of(alike, 2.0)])
+    refused = refusal_of(calibration_of(alike), [winding])
+    assert refused.startswith("the calibration runs do not determine 'icr'")
+    assert words in refused
+    assert refusal_of(calibration_of(alike), [dense_windows_of(alike, 2.0)]) == ""
