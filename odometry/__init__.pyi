@@ -1,4 +1,4 @@
-from .bags.messages import BagMessage, bag_messages
+from .bags.files.messages import BagMessage, bag_messages
 from .checks.findings.finding import CheckReport, Finding
 from .checks.recording import check_recording
 from .comparison.compare import compare
@@ -12,12 +12,12 @@ from .evaluation.open_loop import fitness, measured_poses, open_loop
 from .evaluation.relative import EvaluationConfig, position_errors, relative_errors
 from .evaluation.score import reference_of, score
 from .evaluation.stretches import stretches
-from .feel.follow import follow_feel
 from .feel.identify_feel import identify_feel
-from .feel.live import LiveFeel
+from .feel.labels.follow import follow_feel
+from .feel.labels.live import LiveFeel
 from .feel.model import FeelModel
 from .feel.model_file import read_feel_model, write_feel_model
-from .feel.windows import feel_windows
+from .feel.recorded.windows import feel_windows
 from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.tilt import steepest_slope

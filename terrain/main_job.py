@@ -12,7 +12,7 @@ from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, withhold
-from odometry.feel.follow import Felt
+from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.learned_parameters import learned_parameters
 from odometry.modes.mode_set import ModeSet

@@ -105,6 +105,8 @@ ROOMS_IN_ORDER = {
         *("findings", "statistics", "evidence", "turns", "parts", "treads", "imu", "units"),
         *("copies", "stamps", "poses", "settings", "unexplained"),
     ),
+    "odometry.bags": ("files", "topics", "wheels", "rows"),
+    "odometry.feel": ("recorded", "classifier", "assessment", "labels"),
     "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
     "terrain.cli": ("texts", "verbs"),
     "terrain": ("camera", "region", "image_labels", "switch", "sources", "result", "live"),

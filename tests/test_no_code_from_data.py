@@ -36,9 +36,9 @@ CALLS = {
 LINES = {
     "odometry/io/csv_table.py": "texts are quoted",
     "terrain/batch/batch.py": "names of runs are quoted",
-    "odometry/bags/image_files.py": "stamps, and names that are numbered",
-    "odometry/bags/ordered_rows.py": "numbers below names of columns of its own",
-    "odometry/bags/pose_rows.py": "numbers behind the lines of ordered_rows.py",
+    "odometry/bags/rows/image_files.py": "stamps, and names that are numbered",
+    "odometry/bags/rows/ordered_rows.py": "numbers below names of columns of its own",
+    "odometry/bags/rows/pose_rows.py": "numbers behind the lines of ordered_rows.py",
     "odometry/io/euroc.py": "numbers",
     "odometry/io/kitti.py": "numbers",
     "odometry/io/tum.py": "numbers",
@@ -91,8 +91,8 @@ def test_modules_are_imported_by_names_of_the_program():
     """A name of a file of the package, or of a table of the code: no argument is joined to it."""
     found = {file for file, _, name, _ in calls() if name == "import_module"}
     assert found == {
-        "odometry/bags/damage.py",
-        "odometry/bags/messages.py",
+        "odometry/bags/files/damage.py",
+        "odometry/bags/files/messages.py",
         "odometry/installed.py",
         "terrain/cli/verbs/export.py",
         "terrain/cli/main.py",
@@ -113,7 +113,7 @@ def test_yaml_and_arrays_are_read_as_data():
 
 def test_xml_is_read_without_entities():
     found = {file for file, called, _, _ in calls() if called == "ET.fromstring"}
-    assert found == {"odometry/bags/robot_messages.py", "terrain/camera_files/values.py"}
+    assert found == {"odometry/bags/topics/robot_messages.py", "terrain/camera_files/values.py"}
     for file in found:
         assert '"<!ENTITY" in text' in (ROOT / file).read_text("utf-8")
 

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from odometry.bags.message_fields import FIX, ODOMETRY, POSES, TWISTS
-from odometry.bags.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no_wheels_move
-from odometry.bags.pose_rows import turns
-from odometry.bags.robot_messages import RobotMessages
-from odometry.bags.topic import Topic
-from odometry.bags.topic_guess import COMMANDS, candidates
-from odometry.bags.topic_roles import TopicMap
+from odometry.bags.files.topic import Topic
+from odometry.bags.rows.pose_rows import turns
+from odometry.bags.topics.message_fields import FIX, ODOMETRY, POSES, TWISTS
+from odometry.bags.topics.odometry_kinds import SATELLITES, TRUTH, UNKNOWN, kind_of, no_wheels_move
+from odometry.bags.topics.robot_messages import RobotMessages
+from odometry.bags.topics.topic_guess import COMMANDS, candidates
+from odometry.bags.topics.topic_roles import TopicMap
 
 MOST_NAMED = 6  # topics in a sentence
 

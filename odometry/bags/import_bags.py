@@ -9,20 +9,20 @@ import numpy as np
 import tomli_w
 
 from odometry.arrays import FloatArray
-from odometry.bags.damage import Losses
-from odometry.bags.lens_watch import LensWatch
-from odometry.bags.message_types import MessageTypes
-from odometry.bags.ordered_rows import OrderedRows
-from odometry.bags.places_watch import PlacesWatch
+from odometry.bags.files.damage import Losses
+from odometry.bags.files.message_types import MessageTypes
+from odometry.bags.files.topic import Connection, Message
 from odometry.bags.plan import Plan
-from odometry.bags.pose_rows import Attitudes
+from odometry.bags.rows.lens_watch import LensWatch
+from odometry.bags.rows.ordered_rows import OrderedRows
+from odometry.bags.rows.places_watch import PlacesWatch
+from odometry.bags.rows.pose_rows import Attitudes
+from odometry.bags.rows.set_clock import set_back_table
+from odometry.bags.rows.streams import Consumer, Stream
 from odometry.bags.run_settings import run_settings
 from odometry.bags.run_streams import Learned, make_streams
-from odometry.bags.set_clock import set_back_table
-from odometry.bags.speeds import TreadSpeeds
-from odometry.bags.streams import Consumer, Stream
-from odometry.bags.survey import REPORT_EVERY, Progress, Survey
-from odometry.bags.topic import Connection, Message
+from odometry.bags.topics.survey import REPORT_EVERY, Progress, Survey
+from odometry.bags.wheels.speeds import TreadSpeeds
 from odometry.errors import BagError
 from odometry.fixes.local_metres import LocalMetres
 

@@ -9,8 +9,9 @@ from odometry.bags.choice_notes import (
     restated_frames,
     wheel_notes,
 )
-from odometry.bags.imu_fields import not_measured
-from odometry.bags.message_fields import (
+from odometry.bags.files.topic import Topic
+from odometry.bags.topics.imu_fields import not_measured
+from odometry.bags.topics.message_fields import (
     FIX,
     IMAGES,
     IMU,
@@ -19,19 +20,18 @@ from odometry.bags.message_fields import (
     TRANSFORM_LISTS,
     body_frame,
 )
-from odometry.bags.robot_frame import HOW_TRACK, RobotFrame, robot_frame
-from odometry.bags.robots import own_topics
-from odometry.bags.survey import Survey
-from odometry.bags.topic import Topic
-from odometry.bags.topic_roles import (
+from odometry.bags.topics.robot_frame import HOW_TRACK, RobotFrame, robot_frame
+from odometry.bags.topics.robots import own_topics
+from odometry.bags.topics.survey import Survey
+from odometry.bags.topics.topic_roles import (
     TopicMap,
     camera_info_of,
     clock_of,
     other_odometry_of,
     topic_for,
 )
-from odometry.bags.wheel_choice import wheel_topic
-from odometry.bags.wheel_source import WheelSource, wheel_source
+from odometry.bags.wheels.wheel_choice import wheel_topic
+from odometry.bags.wheels.wheel_source import WheelSource, wheel_source
 from odometry.errors import BagError
 
 REFERENCES = (*POSES, FIX, POINT, *TRANSFORM_LISTS)

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from odometry.bags.camera_info import camera_table, looks_along_z
-from odometry.bags.message_fields import FIX, body_frame
 from odometry.bags.plan import Plan
-from odometry.bags.robot_frame import HOW_HEIGHT
-from odometry.bags.survey import Survey
-from odometry.bags.topic_guess import RECTIFIED
+from odometry.bags.rows.camera_info import camera_table, looks_along_z
+from odometry.bags.topics.message_fields import FIX, body_frame
+from odometry.bags.topics.robot_frame import HOW_HEIGHT
+from odometry.bags.topics.survey import Survey
+from odometry.bags.topics.topic_guess import RECTIFIED
 from odometry.fixes.local_metres import LocalMetres
 from odometry.geometry import se3
 from odometry.geometry.se3 import OPTICAL_FROM_CAMERA

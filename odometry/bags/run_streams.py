@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.bags.fix_rows import fix_reader, sensor_frame
-from odometry.bags.image_files import ImageFiles
-from odometry.bags.imu_fields import FORCE, RATE, measures
-from odometry.bags.lens_watch import LensWatch
-from odometry.bags.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame, check_frame
-from odometry.bags.ordered_rows import OrderedRows
-from odometry.bags.places_watch import PlacesWatch
 from odometry.bags.plan import Plan
-from odometry.bags.pose_rows import (
+from odometry.bags.rows.fix_rows import fix_reader, sensor_frame
+from odometry.bags.rows.image_files import ImageFiles
+from odometry.bags.rows.lens_watch import LensWatch
+from odometry.bags.rows.ordered_rows import OrderedRows
+from odometry.bags.rows.places_watch import PlacesWatch
+from odometry.bags.rows.pose_rows import (
     POSE_COLUMNS,
     Attitudes,
     AttitudesOf,
@@ -26,10 +24,12 @@ from odometry.bags.pose_rows import (
     positions_alone,
     turns,
 )
-from odometry.bags.speeds import TreadSpeeds, row_reader
-from odometry.bags.streams import Consumer, Images, Rows, Stream, TransformRows
-from odometry.bags.survey import Survey
-from odometry.bags.transforms import TransformPoses
+from odometry.bags.rows.streams import Consumer, Images, Rows, Stream, TransformRows
+from odometry.bags.topics.imu_fields import FORCE, RATE, measures
+from odometry.bags.topics.message_fields import FIX, POINT, TRANSFORM_LISTS, body_frame, check_frame
+from odometry.bags.topics.survey import Survey
+from odometry.bags.topics.transforms import TransformPoses
+from odometry.bags.wheels.speeds import TreadSpeeds, row_reader
 from odometry.fixes.local_metres import LocalMetres
 
 IMU_COLUMNS = ("gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z")

@@ -1,5 +1,5 @@
-from .felt import FeelConfig
-from .files import sentences, write_feel
-from .follow import Felt
+from .labels.felt import FeelConfig
+from .labels.files import sentences, write_feel
+from .labels.follow import Felt
 
 __all__ = ["FeelConfig", "Felt", "sentences", "write_feel"]

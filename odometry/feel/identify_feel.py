@@ -8,17 +8,17 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.config import require
 from odometry.errors import IdentificationError
-from odometry.feel.assessment import assessed, choice_words
-from odometry.feel.day_notes import notes_of_days
-from odometry.feel.design import Design
-from odometry.feel.doubted_runs import notes_of_doubted
-from odometry.feel.members import fitted_members
+from odometry.feel.assessment.assessment import assessed, choice_words
+from odometry.feel.assessment.day_notes import notes_of_days
+from odometry.feel.assessment.doubted_runs import notes_of_doubted
+from odometry.feel.assessment.selection import main_labels, selected
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.members import fitted_members
+from odometry.feel.classifier.sensor import SensorShape
+from odometry.feel.classifier.table import FeelTable, days_of, fold_groups
 from odometry.feel.model import FeelModel
-from odometry.feel.selection import main_labels, selected
-from odometry.feel.sensor import SensorShape
-from odometry.feel.table import FeelTable, days_of, fold_groups
-from odometry.feel.whole_drives import WholeDrives, whole_drives
-from odometry.feel.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
+from odometry.feel.recorded.whole_drives import WholeDrives, whole_drives
+from odometry.feel.recorded.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
 from odometry.run import Run

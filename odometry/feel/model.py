@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.feel.design import Design
-from odometry.feel.evidence import Calibration
-from odometry.feel.held_out import Scores
-from odometry.feel.limits import Limits
-from odometry.feel.members import Choice, Members
-from odometry.feel.sensor import SensorShape, ShapeSoFar
-from odometry.feel.strangeness import Strangeness, unknown_probability
-from odometry.feel.windows import STEPS, FeelWindows
+from odometry.feel.assessment.evidence import Calibration
+from odometry.feel.assessment.held_out import Scores
+from odometry.feel.assessment.limits import Limits
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.members import Choice, Members
+from odometry.feel.classifier.sensor import SensorShape, ShapeSoFar
+from odometry.feel.classifier.strangeness import Strangeness, unknown_probability
+from odometry.feel.recorded.windows import STEPS, FeelWindows
 
 
 @dataclass(frozen=True)

@@ -9,16 +9,16 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import OdometryError
-from odometry.feel.design import Design
-from odometry.feel.discriminant import Discriminant
-from odometry.feel.evidence import Calibration
-from odometry.feel.limits import NEVER, Limits
-from odometry.feel.logistic import Logistic
-from odometry.feel.members import Choice, Members
+from odometry.feel.assessment.evidence import Calibration
+from odometry.feel.assessment.limits import NEVER, Limits
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.discriminant import Discriminant
+from odometry.feel.classifier.logistic import Logistic
+from odometry.feel.classifier.members import Choice, Members
+from odometry.feel.classifier.sensor import SensorShape
+from odometry.feel.classifier.strangeness import LENGTHS, TERMS, Strangeness
 from odometry.feel.model import FeelModel
-from odometry.feel.motion_features import SPEED_NAMES
-from odometry.feel.sensor import SensorShape
-from odometry.feel.strangeness import LENGTHS, TERMS, Strangeness
+from odometry.feel.recorded.motion_features import SPEED_NAMES
 from odometry.io.array_file import FileKind, read_array_file, write_array_file
 
 

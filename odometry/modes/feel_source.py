@@ -9,9 +9,9 @@ from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.imm.markov import ModeChain
 from odometry.estimation.imm.mode_belief import floored, log_sum
-from odometry.feel.follow import Felt, follow_feel
+from odometry.feel.labels.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
-from odometry.feel.windows import STEPS
+from odometry.feel.recorded.windows import STEPS
 from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
 from odometry.run import UNKNOWN, Run
@@ -28,7 +28,7 @@ class FeelSource:
     log_evidence : (K, M)
         Log likelihood of each mode, up to a constant, times the weight of a window: what windows
         were worth on runs held out, and n that follow one another count as fewer (see
-        `odometry.feel.evidence.Calibration`).
+        `odometry.feel.assessment.evidence.Calibration`).
     """
 
     stamps_s: FloatArray

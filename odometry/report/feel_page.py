@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
 from odometry.checks.findings.finding import CheckReport
-from odometry.feel.felt import SILENT
-from odometry.feel.files import sentences
-from odometry.feel.follow import Felt
+from odometry.feel.labels.felt import SILENT
+from odometry.feel.labels.files import sentences
+from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.modes.mode_set import NONE_OF_THESE
 from odometry.report.before_use import before_use

@@ -6,9 +6,9 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import RunFolderError
-from odometry.feel.felt import SILENT, FeelConfig
-from odometry.feel.files import doubts
-from odometry.feel.follow import Felt, follow_feel
+from odometry.feel.labels.felt import SILENT, FeelConfig
+from odometry.feel.labels.files import doubts
+from odometry.feel.labels.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
 from odometry.run import UNKNOWN, Run
 from terrain.labelling.given_terrain import GivenTerrain

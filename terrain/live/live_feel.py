@@ -8,9 +8,9 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.estimation.estimate import Estimate
-from odometry.feel.felt import SILENT, FeltWindows
-from odometry.feel.live import LATE_S, LiveFeel
-from odometry.feel.windows import LONGEST_S, STEPS
+from odometry.feel.labels.felt import SILENT, FeltWindows
+from odometry.feel.labels.live import LATE_S, LiveFeel
+from odometry.feel.recorded.windows import LONGEST_S, STEPS
 from odometry.frames import Frame
 from odometry.geometry import se2
 from odometry.run import UNKNOWN

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.errors import ConfigError, EstimationError
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.feel.live import NOTHING
+from odometry.feel.labels.live import NOTHING
 from odometry.feel.model import FeelModel
 from odometry.frames import Frame
 from odometry.parameters import ParameterSet, read_parameters

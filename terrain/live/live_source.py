@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from odometry.errors import ConfigError
-from odometry.feel.live import LiveFeel
+from odometry.feel.labels.live import LiveFeel
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
 from odometry.pipeline import ConstantTerrain, TerrainSource

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.feel.felt import SILENT, FeltWindows
+from odometry.feel.labels.felt import SILENT, FeltWindows
 from odometry.geometry import se2
 from odometry.run import UNKNOWN
 from odometry.terrain_sources import NamedTerrain

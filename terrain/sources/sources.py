@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from odometry.errors import ConfigError, ParameterError, RunFolderError
-from odometry.feel.felt import SILENT
-from odometry.feel.follow import Felt, follow_feel
-from odometry.feel.live_run import follow_feel_live
+from odometry.feel.labels.felt import SILENT
+from odometry.feel.labels.follow import Felt, follow_feel
+from odometry.feel.labels.live_run import follow_feel_live
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
 from odometry.modes.answers import named_modes

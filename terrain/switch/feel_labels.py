@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.feel.felt import FeltWindows
-from odometry.feel.windows import STEPS
+from odometry.feel.labels.felt import FeltWindows
+from odometry.feel.recorded.windows import STEPS
 from odometry.run import UNKNOWN
 from terrain.switch.place_labels import PlaceLabel
 

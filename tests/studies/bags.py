@@ -21,11 +21,11 @@ from pathlib import Path
 import numpy as np
 from rosbags.highlevel import AnyReader
 
+from odometry.bags.files.message_types import MessageTypes
 from odometry.bags.import_bags import write_run
-from odometry.bags.message_fields import COMPRESSED_IMAGE
-from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import make_plan
-from odometry.bags.topic_roles import TopicMap
+from odometry.bags.topics.message_fields import COMPRESSED_IMAGE
+from odometry.bags.topics.topic_roles import TopicMap
 from odometry.errors import BagError
 from tests.odometry.bags.imports import SIZE, looked_at
 from tests.odometry.bags.made_bags import BEGIN_NS, RADIUS_M, Bag, name_of, writer_of

@@ -13,17 +13,17 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.feel.assessment import LENGTHS, assessed, speed_alone
-from odometry.feel.calibration_words import calibration_words
-from odometry.feel.design import Design
-from odometry.feel.felt import FeelConfig
-from odometry.feel.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
-from odometry.feel.limits import STRETCH_S
-from odometry.feel.scores import area, balanced_accuracy, bootstrap_interval
-from odometry.feel.selection import main_labels, selected
-from odometry.feel.strangeness import unknown_probability
-from odometry.feel.table import FeelTable, stratified_folds
-from odometry.feel.windows import feel_windows
+from odometry.feel.assessment.assessment import LENGTHS, assessed, speed_alone
+from odometry.feel.assessment.calibration_words import calibration_words
+from odometry.feel.assessment.held_out import HeldOut, by_length, judged_runs, scored, windows_alone
+from odometry.feel.assessment.limits import STRETCH_S
+from odometry.feel.assessment.scores import area, balanced_accuracy, bootstrap_interval
+from odometry.feel.assessment.selection import main_labels, selected
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.strangeness import unknown_probability
+from odometry.feel.classifier.table import FeelTable, stratified_folds
+from odometry.feel.labels.felt import FeelConfig
+from odometry.feel.recorded.windows import feel_windows
 from odometry.run import Run
 
 SLOW_M_S = 0.3  # mean speed of a run: slower ones train, faster ones are evaluated, and back

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.signal import bilinear, butter, lfilter, sosfilt, sosfilt_zi
 
 from odometry.arrays import FloatArray
-from odometry.feel.signals import AXES
+from odometry.feel.recorded.signals import AXES
 
 RATE_HZ = 100.0  # of the recordings
 Change = Callable[[FloatArray], FloatArray]

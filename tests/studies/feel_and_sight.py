@@ -18,8 +18,8 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
+from odometry.feel.labels.follow import follow_feel
 from odometry.pipeline import replay
 from odometry.run import Run
 from odometry.table import Table

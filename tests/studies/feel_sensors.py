@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 
 from odometry.errors import OdometryError
-from odometry.feel.design import Design
-from odometry.feel.felt import FeelConfig
-from odometry.feel.follow import Felt, check_repeats
-from odometry.feel.members import fitted_members
+from odometry.feel.assessment.selection import main_labels, selected
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.members import fitted_members
+from odometry.feel.classifier.sensor import SensorShape
+from odometry.feel.classifier.table import FeelTable, stratified_folds
+from odometry.feel.labels.felt import FeelConfig
+from odometry.feel.labels.follow import Felt, check_repeats
 from odometry.feel.model import FeelModel
-from odometry.feel.selection import main_labels, selected
-from odometry.feel.sensor import SensorShape
-from odometry.feel.signals import AXES
-from odometry.feel.table import FeelTable, stratified_folds
-from odometry.feel.windows import FeelWindows, feel_windows
+from odometry.feel.recorded.signals import AXES
+from odometry.feel.recorded.windows import FeelWindows, feel_windows
 from odometry.run import UNKNOWN, Run
 from odometry.table import Table
 from tests.studies.feel_alterations import ALTERED, Change

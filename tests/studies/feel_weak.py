@@ -15,15 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.feel.assessment import assessed
-from odometry.feel.design import Design
-from odometry.feel.doubted_runs import LEAST_OWN
-from odometry.feel.felt import FeelConfig
-from odometry.feel.follow import Felt
+from odometry.feel.assessment.assessment import assessed
+from odometry.feel.assessment.doubted_runs import LEAST_OWN
+from odometry.feel.assessment.scores import balanced_accuracy
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.table import FeelTable, stratified_folds
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.scores import balanced_accuracy
-from odometry.feel.table import FeelTable, stratified_folds
-from odometry.feel.windows import feel_windows
+from odometry.feel.labels.felt import FeelConfig
+from odometry.feel.labels.follow import Felt
+from odometry.feel.recorded.windows import feel_windows
 from odometry.run import UNKNOWN, Run
 from odometry.run_span import Span, cut_run
 from odometry.table import Table

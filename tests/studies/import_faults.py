@@ -17,11 +17,11 @@ from types import SimpleNamespace
 import numpy as np
 
 import odometry
-from odometry.bags import speeds
-from odometry.bags.places_watch import PlacesWatch
-from odometry.bags.set_clock import SetClock
-from odometry.bags.side_agreement import SideAgreement
-from odometry.bags.wheel_source import WheelSource
+from odometry.bags.rows.places_watch import PlacesWatch
+from odometry.bags.rows.set_clock import SetClock
+from odometry.bags.wheels import speeds
+from odometry.bags.wheels.side_agreement import SideAgreement
+from odometry.bags.wheels.wheel_source import WheelSource
 from odometry.errors import BagError
 from tests.studies.live_notes import recordings
 

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from odometry.feel.assessment.scores import class_weights
+from odometry.feel.classifier.table import stratified_folds
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.scores import class_weights
-from odometry.feel.table import stratified_folds
 from odometry.modes.answers import named_modes
 from odometry.modes.feel_source import feel_source, with_feel
 from odometry.modes.identify.identify_velocity import identify_velocity_modes

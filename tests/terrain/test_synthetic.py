@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from odometry.feel.signals import AXES
-from odometry.feel.windows import feel_windows
+from odometry.feel.recorded.signals import AXES
+from odometry.feel.recorded.windows import feel_windows
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.ground import GroundMap

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import ComplexArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.feel.signals import ACCEL, in_robot_frame
+from odometry.feel.recorded.signals import ACCEL, in_robot_frame
 from odometry.run import Run
 from odometry.table import Table
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.bags.wheel_names import UNITS
+from odometry.bags.topics.wheel_names import UNITS
 from odometry.checks.evidence.evidence import CLEARLY, Evidence
 from odometry.checks.evidence.heading import CONSISTENT, headings
 from odometry.checks.evidence.scatter import scattered

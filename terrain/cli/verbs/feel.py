@@ -14,8 +14,8 @@ from terrain.cli.run_folders import run_folders
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from odometry.feel.felt import FeelConfig
-    from odometry.feel.follow import Felt
+    from odometry.feel.labels.felt import FeelConfig
+    from odometry.feel.labels.follow import Felt
     from odometry.feel.model import FeelModel
     from odometry.outputs.output_folder import OutputFolder
     from odometry.run_span import Span
@@ -65,7 +65,7 @@ def feel(
     Example:
       terrain-odometry feel my_run --model my_robot.feel --out felt
     """
-    from odometry.feel.felt import FeelConfig
+    from odometry.feel.labels.felt import FeelConfig
     from odometry.feel.model_file import read_feel_model
     from terrain.cli.outputs import claim_folder
 
@@ -81,8 +81,8 @@ def feel(
 def _one(
     folder: Path, model: "FeelModel", config: "FeelConfig", output: "OutputFolder", span: "Span"
 ) -> None:
-    from odometry.feel.files import sentences, write_feel
-    from odometry.feel.follow import follow_feel
+    from odometry.feel.labels.files import sentences, write_feel
+    from odometry.feel.labels.follow import follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about
     from terrain.cli.recordings import checks_made, read_runs
@@ -106,8 +106,8 @@ def _several(
 ) -> None:
     """A folder for each run, and runs.csv; a run that fails is a row."""
     from odometry.errors import OdometryError
-    from odometry.feel.files import write_feel, write_feel_runs
-    from odometry.feel.follow import Felt, follow_feel
+    from odometry.feel.labels.files import write_feel, write_feel_runs
+    from odometry.feel.labels.follow import Felt, follow_feel
     from odometry.report.feel_page import write_feel_report
     from terrain.cli.outputs import about, folder_names
     from terrain.cli.recordings import checks_made, read_runs

@@ -62,7 +62,7 @@ def identify_feel(
 
 
 def _print(model: "FeelModel") -> None:
-    from odometry.feel.calibration_words import calibration_words
+    from odometry.feel.assessment.calibration_words import calibration_words
     from odometry.report.feel_page import LENGTHS, figures
 
     report = model.report

@@ -16,10 +16,10 @@ from terrain.cli.verbs.import_poses import (
 )
 
 if TYPE_CHECKING:
+    from odometry.bags.files.message_types import MessageTypes
     from odometry.bags.import_bags import Imported
-    from odometry.bags.message_types import MessageTypes
-    from odometry.bags.survey import Survey
-    from odometry.bags.topic_roles import TopicMap
+    from odometry.bags.topics.survey import Survey
+    from odometry.bags.topics.topic_roles import TopicMap
 
 LARGEST_M = 1000.0
 OF_RUNS = ("run.toml", "odometry.csv")
@@ -130,7 +130,7 @@ def import_(
     if as_list or out is None:
         _list(bags)
         return
-    from odometry.bags.topic_roles import TopicMap, read_topic_map
+    from odometry.bags.topics.topic_roles import TopicMap, read_topic_map
     from terrain.cli.outputs import claim_folder
 
     topic_map = read_topic_map(map_file) if map_file is not None else TopicMap()
@@ -169,13 +169,13 @@ def _value(name: str, said: Any) -> Any:
 
 
 def _list(bags: tuple[Path, ...]) -> None:
-    from odometry.bags.message_fields import NO_WHEELS
-    from odometry.bags.message_types import MessageTypes
+    from odometry.bags.files.message_types import MessageTypes
     from odometry.bags.plan import make_plan
-    from odometry.bags.topic_guess import best
-    from odometry.bags.topic_list import topic_lines
-    from odometry.bags.topic_roles import TopicMap
-    from odometry.bags.wheel_choice import NO_SPEEDS
+    from odometry.bags.topics.message_fields import NO_WHEELS
+    from odometry.bags.topics.topic_guess import best
+    from odometry.bags.topics.topic_list import topic_lines
+    from odometry.bags.topics.topic_roles import TopicMap
+    from odometry.bags.wheels.wheel_choice import NO_SPEEDS
     from odometry.errors import BagError
 
     found = _surveyed(bags, MessageTypes())
@@ -205,9 +205,9 @@ def _run_name(bag: Path) -> str:
 def _surveyed(bags: tuple[Path, ...], types: "MessageTypes") -> "Survey":
     from tqdm import tqdm
 
-    from odometry.bags.bag_files import bag_files
-    from odometry.bags.damage import Losses
-    from odometry.bags.survey import survey
+    from odometry.bags.files.bag_files import bag_files
+    from odometry.bags.files.damage import Losses
+    from odometry.bags.topics.survey import survey
 
     losses = Losses()
     files = bag_files(bags, losses)
@@ -218,8 +218,8 @@ def _surveyed(bags: tuple[Path, ...], types: "MessageTypes") -> "Survey":
 def _write(bags: tuple[Path, ...], topic_map: "TopicMap", folder: Path) -> "Imported":
     from tqdm import tqdm
 
+    from odometry.bags.files.message_types import MessageTypes
     from odometry.bags.import_bags import write_run
-    from odometry.bags.message_types import MessageTypes
     from odometry.bags.plan import make_plan
 
     types = MessageTypes()

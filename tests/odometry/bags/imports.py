@@ -1,12 +1,12 @@
 """Import bags in one call, without the command line."""
 
-from odometry.bags.bag_files import bag_files
-from odometry.bags.damage import Losses
+from odometry.bags.files.bag_files import bag_files
+from odometry.bags.files.damage import Losses
+from odometry.bags.files.message_types import MessageTypes
 from odometry.bags.import_bags import write_run
-from odometry.bags.message_types import MessageTypes
 from odometry.bags.plan import make_plan
-from odometry.bags.survey import survey
-from odometry.bags.topic_roles import TopicMap
+from odometry.bags.topics.survey import survey
+from odometry.bags.topics.topic_roles import TopicMap
 from odometry.run import Run
 from tests.odometry.bags.made_bags import RADIUS_M, TRACK_M
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.counters import Counters
+from odometry.bags.wheels.counters import Counters
 from odometry.errors import BagError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import RADIUS_M, Bag

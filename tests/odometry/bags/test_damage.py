@@ -6,10 +6,10 @@ import zlib
 import numpy as np
 import pytest
 
-from odometry.bags.bag_files import bag_files
-from odometry.bags.damage import Losses
-from odometry.bags.message_types import MessageTypes
-from odometry.bags.survey import survey
+from odometry.bags.files.bag_files import bag_files
+from odometry.bags.files.damage import Losses
+from odometry.bags.files.message_types import MessageTypes
+from odometry.bags.topics.survey import survey
 from odometry.errors import BagError
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import KINDS, RADIUS_M, Bag, course, name_of

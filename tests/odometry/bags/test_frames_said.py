@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.topic_guess import RECTIFIED
+from odometry.bags.topics.topic_guess import RECTIFIED
 from tests.odometry.bags.test_frames import drive, static, tables, urdf
 
 

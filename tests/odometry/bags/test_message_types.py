@@ -1,7 +1,7 @@
 from dataclasses import replace
 
-from odometry.bags.message_types import MessageTypes
-from odometry.bags.topic import Connection
+from odometry.bags.files.message_types import MessageTypes
+from odometry.bags.files.topic import Connection
 
 
 def test_a_type_is_compiled_once_for_all_bags():

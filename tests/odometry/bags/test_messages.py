@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry import installed
-from odometry.bags.messages import bag_messages
+from odometry.bags.files.messages import bag_messages
 from odometry.errors import BagError, ExtraError
 from tests.odometry.bags.made_bags import BEGIN_NS, Bag, name_of
 

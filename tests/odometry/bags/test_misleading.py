@@ -5,7 +5,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from odometry.bags.topic_roles import read_topic_map
+from odometry.bags.topics.topic_roles import read_topic_map
 from odometry.checks.recording import check_recording
 from odometry.errors import BagError
 from tests.odometry.bags.imports import imported, looked_at

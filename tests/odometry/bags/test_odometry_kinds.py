@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.topic_list import topic_lines
+from odometry.bags.topics.topic_list import topic_lines
 from odometry.errors import BagError
 from tests.odometry.bags.imports import imported, looked_at
 from tests.odometry.bags.made_bags import TRACK_M, Bag, course, half_turn

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.topic_roles import TopicMap
+from odometry.bags.topics.topic_roles import TopicMap
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import RADIUS_M, Bag, course, half_turn
 

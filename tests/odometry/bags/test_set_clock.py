@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.bags.set_clock import SetClock
+from odometry.bags.rows.set_clock import SetClock
 from odometry.checks.recording import check_recording
 from odometry.run_span import Span, cut_run
 from tests.odometry.bags.imports import imported

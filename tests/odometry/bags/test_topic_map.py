@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from odometry.bags.topic_roles import KEYS, read_topic_map
-from odometry.bags.wheel_names import UNITS
+from odometry.bags.topics.topic_roles import KEYS, read_topic_map
+from odometry.bags.topics.wheel_names import UNITS
 from odometry.errors import BagError
 from odometry.io.structured import read_toml
 

@@ -5,8 +5,8 @@ import io
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.bags import damage as module
-from odometry.bags.damage import windows
+from odometry.bags.files import damage as module
+from odometry.bags.files.damage import windows
 
 
 @given(

@@ -1,6 +1,6 @@
 """Terrains with days of their own are noted: the day may be what distinguishes them."""
 
-from odometry.feel.day_notes import notes_of_days
+from odometry.feel.assessment.day_notes import notes_of_days
 from odometry.feel.identify_feel import identify_feel
 from tests.odometry.feel.feel_drives import drive
 from tests.odometry.feel.test_whole_drives import later

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
-from odometry.feel.discriminant import (
+from odometry.feel.classifier.discriminant import (
     fitted_discriminant,
     fitted_to_means,
     moments_of,

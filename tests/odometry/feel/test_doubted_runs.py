@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.feel.assessment import Answers, Assessment
-from odometry.feel.doubted_runs import MOST_NOTES, notes_of_doubted
+from odometry.feel.assessment.assessment import Answers, Assessment
+from odometry.feel.assessment.doubted_runs import MOST_NOTES, notes_of_doubted
 from odometry.feel.identify_feel import identify_feel
 from tests.odometry.feel.feel_drives import drive
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.feel.evidence import (
+from odometry.feel.assessment.evidence import (
     Calibration,
     Stretches,
     calibrated_stretches,
@@ -10,7 +10,7 @@ from odometry.feel.evidence import (
     softmax,
     stretch_numbers,
 )
-from odometry.feel.scores import calibration_error
+from odometry.feel.assessment.scores import calibration_error
 
 NAMES = ("a", "b", "c")
 

@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from odometry.feel.design import Design
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.table import FeelTable
 from odometry.feel.identify_feel import notes_of
-from odometry.feel.table import FeelTable
-from odometry.feel.whole_drives import whole_drives
-from odometry.feel.windows import feel_windows
+from odometry.feel.recorded.whole_drives import whole_drives
+from odometry.feel.recorded.windows import feel_windows
 from tests.odometry.feel.feel_drives import drive
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.feel.table import days_of, fold_groups, stratified_folds
+from odometry.feel.classifier.table import days_of, fold_groups, stratified_folds
 from tests.odometry.feel.feel_drives import drive
 
 LABELS = np.array(["a"] * 8 + ["b"] * 4, dtype=object)

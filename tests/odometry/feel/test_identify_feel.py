@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from odometry.errors import ConfigError, IdentificationError, OdometryError, RunFolderError
-from odometry.feel.felt import NOT_MEASURED, STATIONARY
-from odometry.feel.files import is_unlike, sentences
-from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
+from odometry.feel.labels.felt import NOT_MEASURED, STATIONARY
+from odometry.feel.labels.files import is_unlike, sentences
+from odometry.feel.labels.follow import follow_feel
 from odometry.run import UNKNOWN
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 

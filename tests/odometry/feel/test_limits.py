@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from odometry.feel.evidence import Stretches
-from odometry.feel.limits import KNOWN_SHARE, Limits
-from odometry.feel.strangeness import LENGTHS, Strangeness
+from odometry.feel.assessment.evidence import Stretches
+from odometry.feel.assessment.limits import KNOWN_SHARE, Limits
+from odometry.feel.classifier.strangeness import LENGTHS, Strangeness
 
 COUNTS = {"window": 1.0, "stretch": 5.0, "run": 15.0}
 BETWEEN, WITHIN = 1.0, 3.0  # variances of runs, and of independent windows of a run

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.feel.felt import FeltWindows
-from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.live import LATE_S, LiveFeel
-from odometry.feel.live_run import follow_feel_live
-from odometry.feel.signals import usual_rate_hz
+from odometry.feel.labels.felt import FeltWindows
+from odometry.feel.labels.follow import follow_feel
+from odometry.feel.labels.live import LATE_S, LiveFeel
+from odometry.feel.labels.live_run import follow_feel_live
+from odometry.feel.recorded.signals import usual_rate_hz
 from odometry.run import Robot, Run
 from tests.odometry.feel.feel_drives import drive, with_imu
 

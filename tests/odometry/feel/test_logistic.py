@@ -3,8 +3,8 @@
 import numpy as np
 from sklearn.linear_model import LogisticRegression
 
-from odometry.feel.discriminant import moments_of, pooled
-from odometry.feel.logistic import RIDGE, fitted_logistic
+from odometry.feel.classifier.discriminant import moments_of, pooled
+from odometry.feel.classifier.logistic import RIDGE, fitted_logistic
 from tests.odometry.feel.test_discriminant import NAMES, made
 
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.feel.discriminant import Discriminant
-from odometry.feel.members import Members
-from odometry.feel.strangeness import farness
+from odometry.feel.classifier.discriminant import Discriminant
+from odometry.feel.classifier.members import Members
+from odometry.feel.classifier.strangeness import farness
 
 RNG = np.random.default_rng(7)
 FIRST = Discriminant(np.zeros((0, 3)), RNG.normal(size=(3, 3)), np.diag([1.0, 2.0, 0.5]))

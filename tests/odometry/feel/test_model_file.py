@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.feel.felt import FeelConfig
-from odometry.feel.files import sentences, write_feel
-from odometry.feel.follow import follow_feel
+from odometry.feel.labels.felt import FeelConfig
+from odometry.feel.labels.files import sentences, write_feel
+from odometry.feel.labels.follow import follow_feel
 from odometry.feel.model_file import (
     FeelFileError,
     is_feel_model,

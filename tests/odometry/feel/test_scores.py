@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sklearn.metrics import balanced_accuracy_score, roc_auc_score
 
-from odometry.feel.calibration_words import calibration_words
-from odometry.feel.scores import (
+from odometry.feel.assessment.calibration_words import calibration_words
+from odometry.feel.assessment.scores import (
     area,
     balanced_accuracy,
     bootstrap_interval,

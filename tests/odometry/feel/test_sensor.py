@@ -6,13 +6,19 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.feel.design import Design
-from odometry.feel.files import sentences
-from odometry.feel.follow import follow_feel
-from odometry.feel.live_run import follow_feel_live
+from odometry.feel.classifier.design import Design
+from odometry.feel.classifier.sensor import (
+    LEAST_RUNS,
+    LEAST_WINDOWS,
+    SensorShape,
+    ShapeSoFar,
+    shapes,
+)
+from odometry.feel.labels.files import sentences
+from odometry.feel.labels.follow import follow_feel
+from odometry.feel.labels.live_run import follow_feel_live
 from odometry.feel.model_file import FEEL, FeelFileError, read_feel_model, write_feel_model
-from odometry.feel.sensor import LEAST_RUNS, LEAST_WINDOWS, SensorShape, ShapeSoFar, shapes
-from odometry.feel.windows import BY_WINDOW, feel_windows
+from odometry.feel.recorded.windows import BY_WINDOW, feel_windows
 from odometry.io.array_file import read_array_file, write_array_file
 from odometry.run import UNKNOWN
 from tests.odometry.feel.feel_drives import drive, drives, table, with_imu

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.feel.imu_check import ImuSums
-from odometry.feel.signals import feel_signals, usual_rate_hz
-from odometry.feel.windows import feel_windows
+from odometry.feel.recorded.imu_check import ImuSums
+from odometry.feel.recorded.signals import feel_signals, usual_rate_hz
+from odometry.feel.recorded.windows import feel_windows
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from tests.odometry.feel.feel_drives import drive, with_imu
 

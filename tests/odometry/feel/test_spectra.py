@@ -3,7 +3,7 @@ import pytest
 from scipy.linalg import logm
 from scipy.signal import butter, csd, sosfilt, welch
 
-from odometry.feel.spectra import (
+from odometry.feel.recorded.spectra import (
     SHRUNK,
     band_edges_hz,
     band_powers,

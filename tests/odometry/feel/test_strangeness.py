@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn.linear_model import LogisticRegression
 
-from odometry.feel.strangeness import (
+from odometry.feel.classifier.strangeness import (
     MOST_NAMED,
     RIDGE,
     SHARES,

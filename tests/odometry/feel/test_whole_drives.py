@@ -3,11 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
-from odometry.feel.files import sentences
-from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.whole_drives import PAUSE_S, drive_numbers, whole_drives
-from odometry.feel.windows import feel_windows
+from odometry.feel.labels.files import sentences
+from odometry.feel.labels.follow import follow_feel
+from odometry.feel.recorded.whole_drives import PAUSE_S, drive_numbers, whole_drives
+from odometry.feel.recorded.windows import feel_windows
 from odometry.run_span import Span, cut_run
 from tests.odometry.feel.feel_drives import drive, table
 

@@ -8,7 +8,7 @@ import pytest
 from odometry.errors import ParameterError
 from odometry.estimation.imm.markov import ModeChain
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.windows import STEPS
+from odometry.feel.recorded.windows import STEPS
 from odometry.modes.answers import named_modes
 from odometry.modes.feel_source import FeelSource, feel_source, with_feel
 from odometry.modes.followed import followed

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from odometry.bags.camera_info import camera_table
+from odometry.bags.rows.camera_info import camera_table
 from odometry.geometry.se3 import OPTICAL_FROM_CAMERA, pose
 from terrain.cli.main import cli
 from tests.odometry.bags.imports import imported

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.bags.pose_rows import Attitudes
+from odometry.bags.rows.pose_rows import Attitudes
 from odometry.errors import OutputError
 from odometry.outputs.manifest import read_manifest
 from odometry.outputs.output_folder import OutputFolder

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.feel.felt import FeelConfig
-from odometry.feel.follow import follow_feel
+from odometry.feel.labels.felt import FeelConfig
+from odometry.feel.labels.follow import follow_feel
 from terrain.labelling.felt_terrain import STRETCH_S, SURE, given_by_feel
 from tests.odometry.feel.feel_drives import drive, model_of_three
 from tests.terrain.switch.test_feel_labels import joined

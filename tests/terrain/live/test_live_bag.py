@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.bags.messages import bag_messages
+from odometry.bags.files.messages import bag_messages
 from odometry.estimation.config import IcrEkfConfig
 from odometry.live_frames import LiveFrames
 from odometry.run import Robot

@@ -9,7 +9,7 @@ import pytest
 from odometry.errors import ConfigError, RunFolderError
 from odometry.estimation.config import IcrEkfConfig
 from odometry.feel.identify_feel import identify_feel
-from odometry.feel.live_run import follow_feel_live
+from odometry.feel.labels.live_run import follow_feel_live
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain
 from odometry.run import UNKNOWN, Robot, Run

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.feel.follow import follow_feel
 from odometry.feel.identify_feel import identify_feel
+from odometry.feel.labels.follow import follow_feel
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.run import UNKNOWN, Run
 from odometry.table import Table

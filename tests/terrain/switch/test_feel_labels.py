@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import ConfigError
-from odometry.feel.follow import follow_feel
+from odometry.feel.labels.follow import follow_feel
 from odometry.run import Run
 from odometry.table import Table
 from terrain.config import Config

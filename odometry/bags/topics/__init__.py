@@ -1,0 +1,1 @@
+"""What the messages of a topic are, and which topics of a bag could serve a run."""

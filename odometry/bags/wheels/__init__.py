@@ -1,0 +1,1 @@
+"""Wheels and treads: their names, sides, speeds and counters, and which topic to take."""

@@ -1,0 +1,1 @@
+"""What a classifier is worth on runs held out: scores, evidence, limits, doubted runs."""

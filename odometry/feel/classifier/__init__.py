@@ -1,0 +1,1 @@
+"""The parts of a classifier by feel, and how unlike its training a window is."""

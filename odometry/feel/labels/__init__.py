@@ -1,0 +1,1 @@
+"""Terrain by feel along a run, from a file or live, and its files."""

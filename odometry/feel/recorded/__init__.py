@@ -1,0 +1,1 @@
+"""What sensors recorded, in windows: signals, spectra, motion, and their checks."""
