@@ -21,7 +21,7 @@ from matplotlib.patheffects import withStroke
 
 import odometry
 import terrain
-from odometry.report.figure import terrain_colours
+from odometry.report.drawing.figure import terrain_colours
 from terrain.calibration.look_ahead import look_ahead
 from terrain.camera_files.read import read_calibration
 from terrain.camera_files.transforms import mount_in, read_transforms

@@ -45,9 +45,9 @@ from .run_span import Span, cut_run
 from .simulation.contact.drive import simulate_contact
 from .trajectory import SpatialTrajectory, Trajectory
 from .windows.config import WindowConfig
-from .windows.run_inputs import inputs_of
+from .windows.recorded.run_inputs import inputs_of
+from .windows.travel.windows import windows_of
 from .windows.window_errors import window_errors
-from .windows.windows import windows_of
 
 __all__ = [
     "MODELS",

@@ -19,7 +19,7 @@ from odometry.frames import Frame
 from odometry.run import Run
 from odometry.run_end import run_end_events
 from odometry.run_terrains import Footing
-from odometry.windows.gaps import GapsSoFar, odometry_gaps
+from odometry.windows.recorded.gaps import GapsSoFar, odometry_gaps
 
 LEAST_YAW_SIGMA_RAD = 0.1  # of a yaw found before the replay
 

@@ -107,6 +107,8 @@ ROOMS_IN_ORDER = {
     ),
     "odometry.bags": ("files", "topics", "wheels", "rows"),
     "odometry.feel": ("recorded", "classifier", "assessment", "labels"),
+    "odometry.windows": ("recorded", "travel", "dense", "stretches"),
+    "odometry.report": ("drawing", "icrs", "comparison", "gap", "modes"),
     "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
     "terrain.cli": ("texts", "verbs"),
     "terrain": ("camera", "region", "image_labels", "switch", "sources", "result", "live"),

@@ -125,7 +125,7 @@ def test_pages_are_put_together_in_one_file_which_escapes():
         for file, node in nodes(ast.Constant)
         if isinstance(node.value, str) and ("</" in node.value or "<td" in node.value)
     }
-    assert found == {"odometry/report/html.py"}
+    assert found == {"odometry/report/drawing/html.py"}
 
 
 def test_the_program_that_writes_lines_is_known():

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from odometry.report.figure import save_figure
-from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
+from odometry.report.drawing.figure import save_figure
+from odometry.report.drawing.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from tests.studies.browser import Browser, installed
 from tests.studies.pages import faults
 

@@ -16,8 +16,8 @@ from odometry.identification.plausibility import refusals
 from odometry.models.base import KinematicModel
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.set_of_robot import set_notes
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 
 AS_GIVEN = "taken as it is; it may have been identified on these very runs"
 

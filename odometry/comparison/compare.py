@@ -23,8 +23,8 @@ from odometry.positions.heading import FoundHeading, found_heading, needs_headin
 from odometry.positions.timing import timings_of
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
-from odometry.windows.measured_poses import YAW_FOUND
-from odometry.windows.record import record_of
+from odometry.windows.recorded.measured_poses import YAW_FOUND
+from odometry.windows.recorded.record import record_of
 
 DEFAULT_MODELS = ("differential_drive", "icr_symmetric", "icr")
 

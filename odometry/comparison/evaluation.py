@@ -19,10 +19,10 @@ from odometry.evaluation.open_loop import Fitness, fitness, measured_poses, open
 from odometry.geometry import se2
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import level_path, window_motion
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.recorded.run_inputs import inputs_of
+from odometry.windows.travel.motion import level_path, window_motion
+from odometry.windows.travel.windows import Windows
 from odometry.windows.window_errors import WindowErrors, errors_of_motion
-from odometry.windows.windows import Windows
 
 
 @dataclass(frozen=True)

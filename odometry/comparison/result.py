@@ -12,7 +12,7 @@ from odometry.comparison.statistics import Difference
 from odometry.comparison.summary import Place, Summary, summarise
 from odometry.comparison.training_horizons import HorizonErrors
 from odometry.parameters import ParameterSet
-from odometry.windows.record import summed
+from odometry.windows.recorded.record import summed
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from odometry.independent_runs import check_no_run_twice
 from odometry.run import Run, robot_labels, run_names
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.measured_poses import lacks_yaw
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.recorded.measured_poses import lacks_yaw
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows, windows_of
 
 MOST_FOLDS = 10  # so that the cost of a comparison is linear in the number of runs
 

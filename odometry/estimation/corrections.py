@@ -12,7 +12,7 @@ from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
 from odometry.run import Run
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.recorded.run_inputs import inputs_of
 
 NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)
 

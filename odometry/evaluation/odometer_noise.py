@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.evaluation.open_loop_errors import COMPONENTS, SOURCES, OpenLoopPath
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
-from odometry.windows.horizons import spatial_horizons
+from odometry.windows.travel.horizons import spatial_horizons
 
 LENGTHS_M = (2.0, 5.0, 10.0, 20.0, 50.0)  # wheel travel of the stretches
 STRETCHES_IN_RUN = 4  # a length is measured where so many lie end to end

@@ -11,7 +11,7 @@ from odometry.errors import RunFolderError, TrajectoryError
 from odometry.geometry.angles import continuous_difference
 from odometry.run import Run
 from odometry.trajectory import SpatialTrajectory
-from odometry.windows.run_inputs import attitude_of
+from odometry.windows.recorded.run_inputs import attitude_of
 
 
 def measured_poses(run: Run) -> tuple[FloatArray, FloatArray]:

@@ -11,7 +11,7 @@ from odometry.evaluation.odometer_noise import OdometerNoise, measured_noise, mo
 from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
-from odometry.windows.horizons import spatial_horizons
+from odometry.windows.travel.horizons import spatial_horizons
 
 DISTANCES_M = (5.0, 20.0, 100.0)
 STRIDE = 0.25  # from start to start, in distances

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.run import Run
 from odometry.trajectory import Trajectory
-from odometry.windows.turns import counted_turns
+from odometry.windows.recorded.turns import counted_turns
 
 
 class CountedYaw(NamedTuple):

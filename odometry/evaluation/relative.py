@@ -9,7 +9,7 @@ from odometry.config import require_positive
 from odometry.geometry import se2
 from odometry.geometry.angles import continuous_difference
 from odometry.trajectory import Trajectory
-from odometry.windows.horizons import spatial_horizons
+from odometry.windows.travel.horizons import spatial_horizons
 
 LEAST_SPREAD = 0.1  # of the reach: positions closer than this give no heading
 

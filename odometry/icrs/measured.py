@@ -11,8 +11,8 @@ from odometry.geometry import se2
 from odometry.icrs.points import NO_SLIP, icr_covariances, icrs_of_twist, turn_is_known
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances, window_covariances
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.travel.noise import pose_variances, window_covariances
+from odometry.windows.travel.windows import Windows, windows_of
 
 SHORT_WINDOWS = WindowConfig(horizon_s=1.0)  # in which speeds hardly change
 SPEED_SHARE = 0.02  # by which a mean tread speed may be off

@@ -15,9 +15,9 @@ from odometry.identification.uncertainty import Uncertainty, parameter_uncertain
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.stretch_noise import StretchNoise
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretch_noise import StretchNoise
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import Windows
 
 __all__ = ["Fit", "fit"]
 

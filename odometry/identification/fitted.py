@@ -8,9 +8,9 @@ from scipy.special import stdtrit
 
 from odometry.arrays import FloatArray
 from odometry.models.base import KinematicModel
-from odometry.windows.stretch_noise import StretchNoise
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretch_noise import StretchNoise
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 
 SHOWN = 0.3  # a parameter is named if it has this share of a direction
 

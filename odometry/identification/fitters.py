@@ -16,8 +16,8 @@ from odometry.models.catalogue import model_named
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 
 Wanted = str | KinematicModel | ParameterSet
 

@@ -9,9 +9,9 @@ from odometry.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fit_pair import FitPair
 from odometry.identification.fitters import FitTo
-from odometry.windows.stretches import Stretches
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 from odometry.windows.window_errors import WindowErrors, errors_over
-from odometry.windows.windows import Windows
 
 MOST_FOLDS = 10  # fits of an evaluation: more of them take time and change little
 

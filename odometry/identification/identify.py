@@ -31,9 +31,9 @@ from odometry.models.catalogue import MODELS
 from odometry.run import UNKNOWN, Robot, Run
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
-from odometry.windows.stretches import Stretches
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows, windows_of
 from odometry.windows.window_errors import WindowErrors, errors_over
-from odometry.windows.windows import Windows, windows_of
 
 SIMPLE = "icr_symmetric"  # two factors: a scale and an effective width
 

@@ -8,15 +8,15 @@ from odometry.identification.fitted import NORMAL, deviations_within
 from odometry.models.base import Parameter
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import (
+from odometry.windows.recorded.record import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     ODOMETRY_GAP,
     POSE_GAP,
     UNKNOWN_TURNS,
 )
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 
 FEW = 0.5  # share of the windows that may be shorter without a note
 WHY = {

@@ -1,7 +1,7 @@
 """What a fit to positions without yaw is based on, and what positions do not determine."""
 
 from odometry.identification.fitted import Fit
-from odometry.windows.stretches import Stretches
+from odometry.windows.stretches.stretches import Stretches
 
 UNNOTICED_S = 0.1  # positions of real recordings that are in step with their treads lie within it
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.models.base import KinematicModel
-from odometry.windows.motion import linearised_window_motion, window_motion
-from odometry.windows.noise import window_covariances
-from odometry.windows.stretch_motion import linearised_shape_residuals, shape_residuals
-from odometry.windows.stretch_noise import covariance_parts, known_covariance, whitening
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretch_motion import linearised_shape_residuals, shape_residuals
+from odometry.windows.stretches.stretch_noise import covariance_parts, known_covariance, whitening
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.motion import linearised_window_motion, window_motion
+from odometry.windows.travel.noise import window_covariances
+from odometry.windows.travel.windows import Windows
 
 REMEMBERED = 2  # a search evaluates its last point again, or the one before
 

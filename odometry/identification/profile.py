@@ -14,8 +14,8 @@ from odometry.identification.problem import PROBLEMS, AnyProblem, StretchProblem
 from odometry.identification.start import SolverConfig
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.stretches import Stretches
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.noise import pose_variances
 
 NEAR = 1e-3  # of a standard deviation: how closely the ends are searched
 FARTHEST = 50.0  # half widths of the symmetric interval; beyond, there is no end

@@ -9,7 +9,7 @@ from odometry.digits import within_interval, within_sigma
 from odometry.effects.tables import effects_of
 from odometry.identification.fit import Fit
 from odometry.identification.identification import Identified
-from odometry.windows.windows import Windows
+from odometry.windows.travel.windows import Windows
 
 LEAST_CORRELATION = 0.3  # that is reported
 NO_HELD_OUT = (

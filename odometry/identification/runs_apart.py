@@ -8,8 +8,8 @@ from odometry.errors import IdentificationError
 from odometry.identification.fit import Fit
 from odometry.identification.fit_pair import FitPair
 from odometry.identification.fitters import FitTo
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 
 
 @dataclass(frozen=True)

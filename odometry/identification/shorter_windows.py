@@ -8,8 +8,8 @@ import numpy as np
 from odometry.identification.spread import FEWEST_WINDOWS
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows, windows_of
 
 MORE = 1.2  # times the fewest windows are aimed at: gaps and sparse poses cost some
 LEAST_S = 4.0  # of a window: slip that wanders over seconds is no scatter of shorter ones

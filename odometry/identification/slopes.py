@@ -15,8 +15,8 @@ from odometry.identification.uncertainty import residual_scale
 from odometry.models.base import KinematicModel, Stages
 from odometry.run import Robot
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import Windows
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import Windows
 
 FLAT_RAD = np.radians(1.5)  # terrain tilted less than this is flat
 ROUNDS = 10

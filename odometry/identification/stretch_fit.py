@@ -18,16 +18,16 @@ from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
 from odometry.run import Robot, Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.measured_poses import lacks_yaw
-from odometry.windows.stretch_motion import change_by_late_turns
-from odometry.windows.stretch_noise import (
+from odometry.windows.recorded.measured_poses import lacks_yaw
+from odometry.windows.stretches.stretch_motion import change_by_late_turns
+from odometry.windows.stretches.stretch_noise import (
     UNKNOWN_NOISE,
     StretchNoise,
     covariance_parts,
     likeliest_noise,
 )
-from odometry.windows.stretches import MOST_POSITIONS, Stretches, stretches_of
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.stretches.stretches import MOST_POSITIONS, Stretches, stretches_of
+from odometry.windows.travel.windows import Windows, windows_of
 
 FEWEST = 4  # stretches whose spread is taken
 SCALE = 0.01  # standard deviation of what a gyroscope's scale is off by

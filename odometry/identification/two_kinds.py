@@ -12,9 +12,9 @@ from odometry.identification.fit import Fit
 from odometry.identification.fit_pair import FitPair
 from odometry.identification.fitters import FitTo
 from odometry.identification.plausibility import FAR_RESIDUALS
-from odometry.windows.stretches import Stretches
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 from odometry.windows.window_errors import errors_over
-from odometry.windows.windows import Windows
 
 LEAST_WINDOWS = 20  # fewer are explained by two sets where nothing changes
 PIECES = 8  # of the windows, on which searches start

@@ -13,8 +13,8 @@ from odometry.identification.spread import (
     correlated_groups,
     spread_between,
 )
-from odometry.windows.noise import by_pose_noise, score_covariance, window_covariances
-from odometry.windows.windows import Windows
+from odometry.windows.travel.noise import by_pose_noise, score_covariance, window_covariances
+from odometry.windows.travel.windows import Windows
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from odometry.modes.measured_steps import (
 )
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
-from odometry.windows.blocked_turns import blocked_spans
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.turns import continuous_yaw
+from odometry.windows.recorded.blocked_turns import blocked_spans
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.turns import continuous_yaw
 
 AROUND_S = 0.15  # on either side: over which a speed is read from poses
 STANDING_M_S = 0.01  # of a tread, or less

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 MOST_FASTER = 1.2  # times the fastest run of identification: beyond, models are not valid
 

@@ -15,7 +15,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry.angles import wrap
 from odometry.run import Run
 from odometry.sensors import YawRate, gyroscope_of
-from odometry.windows.measured_poses import YAW_FOUND
+from odometry.windows.recorded.measured_poses import YAW_FOUND
 
 WINDOW_S, EVERY_S = 5.0, 0.5
 LEAST_POSES, LEAST_SHARE = 15, 0.8  # of a window, and of its time

@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 CHANCE = 1e-9  # of so many repeated readings in a row, by how often the others are repeated
 LEAST_OTHERS = 30  # readings that say how often

@@ -8,9 +8,9 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.heading_check import without_spikes
 from odometry.run import Run
 from odometry.sensors import gyroscope_of
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import touched
-from odometry.windows.turns import continuous_yaw
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.spans import touched
+from odometry.windows.recorded.turns import continuous_yaw
 
 LEAST_STEPS = 20  # of a run
 LATE_S = np.arange(-2, 5) * 0.15  # of headings against the gyroscope: clocks are not always one

@@ -11,7 +11,7 @@ from odometry.estimation.imm.mode_belief import ModeBelief
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.faster import faster_than
 from odometry.modes.gyroscope_bias import moving
-from odometry.windows.spans import touched, within
+from odometry.windows.recorded.spans import touched, within
 
 OUTLIERS = 1e-3  # share of measurements that follow a Cauchy distribution
 MOST_SIGMAS = 5.0  # root mean square of an innovation beyond which it pulls no more

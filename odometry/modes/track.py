@@ -20,7 +20,7 @@ from odometry.modes.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.tempered_bank import independent_share, usable_measurements
 from odometry.run import Run
-from odometry.windows.spans import within
+from odometry.windows.recorded.spans import within
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]
 

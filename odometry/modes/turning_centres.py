@@ -18,7 +18,7 @@ from odometry.geometry.angles import wrap
 from odometry.modes.measured_steps import StepWindows, during
 from odometry.modes.response import lagged
 from odometry.modes.traction import TURNS, twists_of
-from odometry.windows.spans import touched
+from odometry.windows.recorded.spans import touched
 
 STEP_S, LONGEST_S = 0.5, 1.05  # from a pose to the one it is compared with
 LATE_S = np.arange(-1, 9) * 0.1  # of poses, of speed and of turn against the treads

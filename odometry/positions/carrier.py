@@ -13,11 +13,11 @@ from odometry.identification.stretch_fit import fit_stretches, stretches_for
 from odometry.models.catalogue import MODELS
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import level_path
-from odometry.windows.record import Record
-from odometry.windows.stretch_motion import antenna_ways, carried, rotations
-from odometry.windows.stretch_noise import UNKNOWN_NOISE
-from odometry.windows.stretches import Stretches, position_record_with_yaw_rates
+from odometry.windows.recorded.record import Record
+from odometry.windows.stretches.stretch_motion import antenna_ways, carried, rotations
+from odometry.windows.stretches.stretch_noise import UNKNOWN_NOISE
+from odometry.windows.stretches.stretches import Stretches, position_record_with_yaw_rates
+from odometry.windows.travel.motion import level_path
 
 PREFERRED = ("icr", "icr_symmetric")  # the first that the positions determine
 LEAST_POSITION_M, LEAST_WANDER_M, LEAST_WANDER_RAD = 0.005, 0.005, 0.002

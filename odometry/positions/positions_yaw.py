@@ -15,7 +15,7 @@ from odometry.errors import OdometryError
 from odometry.geometry.angles import wrap
 from odometry.positions.carrier import Carrier
 from odometry.positions.smoother import Filtered, Way, filtered, smoothed
-from odometry.windows.record import ODOMETRY_GAP
+from odometry.windows.recorded.record import ODOMETRY_GAP
 
 STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined

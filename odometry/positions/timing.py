@@ -17,9 +17,9 @@ from odometry.errors import OdometryError
 from odometry.run import Run, with_stamps
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.gyroscope_yaw import PathShape
-from odometry.windows.record import Record
-from odometry.windows.stretches import position_record_with_yaw_rates
+from odometry.windows.recorded.gyroscope_yaw import PathShape
+from odometry.windows.recorded.record import Record
+from odometry.windows.stretches.stretches import position_record_with_yaw_rates
 
 LONGEST_S, COARSE_S, FINE_S = 1.0, 0.1, 0.01
 TRIED_S = np.arange(-LONGEST_S, LONGEST_S + COARSE_S / 2, COARSE_S)

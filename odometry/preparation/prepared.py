@@ -12,7 +12,7 @@ from odometry.preparation.pose_noise import with_pose_noise
 from odometry.preparation.row_rates import with_row_rates
 from odometry.run import Run
 from odometry.speed_step import with_speed_step
-from odometry.windows.measured_poses import lacks_yaw
+from odometry.windows.recorded.measured_poses import lacks_yaw
 
 
 def prepared_run(

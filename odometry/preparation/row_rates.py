@@ -12,7 +12,7 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.positions.timing import timings_of
 from odometry.run import Run
-from odometry.windows.measured_poses import lacks_yaw
+from odometry.windows.recorded.measured_poses import lacks_yaw
 
 SLOW_S = 0.15  # between rows: half of a faster row is a delay like others
 CLEARLY = 0.5  # of what is left of the turn by treads when rates are samples at the stamps

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.watches.rest_watch import STILL_M_S
 from odometry.run import Run
-from odometry.windows.interpolated import interpolated
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.interpolated import interpolated
+from odometry.windows.recorded.spans import runs_of
 
 SETTLED_S = 2.0  # after that a robot that braked, and positions that are late, are stationary too
 PIECE_S = (3.0, 20.0)  # shortest and longest time at rest that counts as one

@@ -11,9 +11,9 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import CheckReport
-from odometry.report.figure import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS, LineStyle
-from odometry.report.labels import HALO
-from odometry.windows.spans import within
+from odometry.report.drawing.figure import LINE_STYLES, REFERENCE_STYLE, TERRAIN_TINTS, LineStyle
+from odometry.report.drawing.labels import HALO
+from odometry.windows.recorded.spans import within
 
 Marks = Mapping[str, FloatArray]
 

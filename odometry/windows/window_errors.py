@@ -6,10 +6,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.models.base import KinematicModel
-from odometry.windows.motion import window_motion
-from odometry.windows.stretch_motion import shape_errors
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretch_motion import shape_errors
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.motion import window_motion
+from odometry.windows.travel.windows import Windows
 
 
 @dataclass(frozen=True)

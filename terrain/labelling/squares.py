@@ -13,7 +13,7 @@ from odometry.geometry import se2
 from odometry.run import Run
 from odometry.table import Table
 from odometry.trajectory import Trajectory
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.recorded.gaps import odometry_gaps
 from terrain.camera.camera import Camera
 from terrain.labelling.driven_path import DrivenWay, Passing
 from terrain.region.footprint_parts import Rectangle, is_visible

@@ -16,7 +16,7 @@ from odometry.pipeline import TerrainSource, can_start, started, stepped
 from odometry.run import UNKNOWN, Robot
 from odometry.running_odometer import RunningOdometer
 from odometry.set_of_robot import set_notes
-from odometry.windows.gaps import GapsSoFar
+from odometry.windows.recorded.gaps import GapsSoFar
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.likeness import Likeness

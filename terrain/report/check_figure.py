@@ -15,7 +15,7 @@ from odometry.report.check_plots import (
     plot_tread_speeds,
     plot_yaw_rates,
 )
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from odometry.run import Run
 from terrain.checks.drawn_images import shown_image
 from terrain.report.ground_plots import plot_ground

@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from odometry.evaluation.stretches import Stretch
-from odometry.report.figure import save_figure, show_run_time
-from odometry.report.html import Picture
-from odometry.report.labels import broken_at_outages
-from odometry.report.map_plots import plot_ground, plot_paths
-from odometry.report.plots import (
+from odometry.report.drawing.figure import save_figure, show_run_time
+from odometry.report.drawing.html import Picture
+from odometry.report.drawing.labels import broken_at_outages
+from odometry.report.drawing.map_plots import plot_ground, plot_paths
+from odometry.report.icrs.plots import (
     mark_changes,
     plot_error_distribution,
     plot_icr,

@@ -11,7 +11,7 @@ from matplotlib.patheffects import withStroke
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
 from odometry.outputs.output_file import picture_source
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from odometry.run import Robot
 from terrain.calibration.chessboard import BoardViews
 from terrain.calibration.lens_from_boards import LensFit

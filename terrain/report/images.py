@@ -5,8 +5,8 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from odometry.report.figure import save_figure, show_run_time
-from odometry.report.html import Picture
+from odometry.report.drawing.figure import save_figure, show_run_time
+from odometry.report.drawing.html import Picture
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classifier
 from terrain.image_labels.image_label import ImageLabel

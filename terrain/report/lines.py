@@ -9,8 +9,8 @@ from odometry.arrays import FloatArray
 from odometry.estimation.transition import Y_LEFT
 from odometry.evaluation.score import Score
 from odometry.models.catalogue import ICR_NAMES
-from odometry.report.figure import REFERENCE_STYLE, LineStyle, line_styles
-from odometry.report.labels import broken_at_outages, thinned_rows
+from odometry.report.drawing.figure import REFERENCE_STYLE, LineStyle, line_styles
+from odometry.report.drawing.labels import broken_at_outages, thinned_rows
 from odometry.trajectory import Trajectory
 from terrain.result.evaluated import EvaluatedTrajectory
 from terrain.result.run_result import RunResult

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from odometry.checks.findings.finding import CheckReport
-from odometry.report.before_use import before_use
-from odometry.report.figure import terrain_colours
-from odometry.report.html import Grid, Listing, Paragraph, Picture, Section, write_page
+from odometry.report.drawing.before_use import before_use
+from odometry.report.drawing.figure import terrain_colours
+from odometry.report.drawing.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from terrain.report.figures import (
     Tints,
     distribution_picture,

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from odometry.arrays import AnyArray
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from terrain.classification.neighbours.calibration import (
     BINS,
     Reliability,

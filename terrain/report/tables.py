@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
-from odometry.report.html import Grid
+from odometry.report.drawing.html import Grid
 from odometry.run import UNKNOWN
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.result.evaluation_notes import not_checked, verdict

@@ -1,7 +1,7 @@
 """What a run does not show of errors of positions that last."""
 
 from odometry.preparation.wander_at_rest import wander_sigma_m
-from odometry.windows.measured_poses import lacks_yaw, measured_positions
+from odometry.windows.recorded.measured_poses import lacks_yaw, measured_positions
 from terrain.result.run_result import RunResult
 
 HELD = frozenset({"noisy_positions", "wandering_positions"})  # kinds of events

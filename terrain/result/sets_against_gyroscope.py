@@ -12,13 +12,13 @@ from odometry.effects.tables import model_of
 from odometry.parameters import TerrainParameters
 from odometry.run import Run
 from odometry.sensors import YawRate
-from odometry.windows.motion_ratios import (
+from odometry.windows.recorded.run_inputs import inputs_of
+from odometry.windows.travel.motion_ratios import (
     FEWEST_WINDOWS,
     HORIZON_M,
     LEAST_TURN_RAD,
     MotionRatios,
 )
-from odometry.windows.run_inputs import inputs_of
 from terrain.result.run_result import RunResult
 from terrain.result.sets_against_poses import SetAgainstPoses
 

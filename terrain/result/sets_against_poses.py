@@ -11,14 +11,14 @@ from odometry.errors import WindowError
 from odometry.parameters import ParameterSet
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion_ratios import (
+from odometry.windows.travel.motion_ratios import (
     FEWEST_WINDOWS,
     HORIZON_M,
     WAY,
     MotionRatios,
     motion_ratios,
 )
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.travel.windows import Windows, windows_of
 from terrain.result.run_result import RunResult
 
 

@@ -31,11 +31,11 @@ from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig
 from odometry.installed import shipped_data
 from odometry.models.catalogue import MODELS
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import linearised_window_motion
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.motion import linearised_window_motion
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import windows_of
 from terrain.classification.features.features import feature_matrix
 from terrain.classification.neighbours.nearest import nearest
 from terrain.classification.presets import PRESETS

@@ -21,8 +21,8 @@ from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import windows_of
 
 HOUR_S, RATE_HZ = 3600.0, 20.0
 TRUE = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}

@@ -19,8 +19,8 @@ from odometry.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.run_inputs import inputs_of
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.run_inputs import inputs_of
+from odometry.windows.travel.windows import windows_of
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.photographs.patches import find_photos, stated_metres_per_pixel

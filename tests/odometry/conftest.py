@@ -19,8 +19,8 @@ from odometry.gap.prepare.uncertain_base import Uncertain
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table
-from odometry.windows.dense import dense_windows_of
-from odometry.windows.dense_noise import Noise
+from odometry.windows.dense.dense import dense_windows_of
+from odometry.windows.dense.dense_noise import Noise
 
 ROBOT = Robot(track_width=0.55, name="R", wheel_radius=0.165)
 Y_LEFT, Y_RIGHT, X_ICR = 0.45, -0.42, 0.02

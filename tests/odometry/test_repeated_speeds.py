@@ -10,8 +10,8 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name.further import further_candidates
 from odometry.gap.prepare.measured import measured_of
 from odometry.repeated_speeds import between_new_values
-from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.averaged import averaged_windows
+from odometry.windows.dense.dense import dense_windows_of
 
 CONFIG = GapConfig()
 

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.identification.identify import identify
 from odometry.run import Run
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.recorded.gaps import odometry_gaps
 
 CUT_S = 2.0
 SPEED_STEP_M_S = 0.05  # of a coarse encoder: its speeds often repeat

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.io.csv_table import write_csv_table
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from odometry.simulation.contact.steady_state import steady_state
 from odometry.simulation.contact.vehicle import ContactVehicle, read_contact_vehicle
 

@@ -20,7 +20,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.models.icr_inertia import IcrInertia
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from tests.studies.auriga import VEHICLE, SteadyStates, constant_icr_errors, solve, spot_turn_ratio
 

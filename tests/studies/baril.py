@@ -25,10 +25,10 @@ from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
-from odometry.report.comparison_page import write_comparison_report
+from odometry.report.comparison.comparison_page import write_comparison_report
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 from tests.studies.real_models import recordings
 
 PRINTED = Path(__file__).parents[2] / "data" / "parameters"

@@ -26,7 +26,7 @@ from odometry.models.catalogue import MODELS
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 
 POSITION_M, YAW_RAD = 0.01, np.radians(0.3)
 ICR = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.04, "alpha_left": 0.96, "alpha_right": 0.93}

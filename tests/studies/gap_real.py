@@ -41,7 +41,7 @@ from odometry.gap.show.files import write_gap
 from odometry.gap.show.quantities import held_out_share, percent, with_interval
 from odometry.gap.show.words import parameter_words
 from odometry.io.files import atomic_write
-from odometry.report.gap_page import write_gap_report
+from odometry.report.gap.gap_page import write_gap_report
 from tests.studies.gap_real_cases import Case, controls, real, recordings, withheld
 from tests.studies.gap_real_changes import changed, count_of_changes, made_m
 

@@ -28,11 +28,11 @@ from odometry.models.catalogue import MODELS
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import level_path
-from odometry.windows.record import position_record_of
-from odometry.windows.stretch_motion import rotations
+from odometry.windows.recorded.record import position_record_of
+from odometry.windows.stretches.stretch_motion import rotations
+from odometry.windows.travel.motion import level_path
+from odometry.windows.travel.windows import windows_of
 from odometry.windows.window_errors import window_errors
-from odometry.windows.windows import windows_of
 
 MOTION = Path(os.environ.get("TERRAIN_ODOMETRY_DATA", "")) / "motion"
 CONFIG = WindowConfig()

@@ -17,7 +17,7 @@ from odometry.errors import OdometryError
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
 from odometry.run import Run
-from odometry.windows.measured_poses import YAW_FOUND
+from odometry.windows.recorded.measured_poses import YAW_FOUND
 from tests.studies.positions import MOTION, emptied, without_gyroscope
 
 

@@ -33,8 +33,8 @@ from odometry.simulation.contact.vehicle import read_contact_vehicle
 from odometry.simulation.courses import STEP_S, make_course, slope_paths
 from odometry.simulation.record import ContactSensors, write_contact_run
 from odometry.windows.config import WindowConfig
-from odometry.windows.run_inputs import inputs_of
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.run_inputs import inputs_of
+from odometry.windows.travel.windows import windows_of
 
 DATA = Path(__file__).parents[2] / "data"
 PRINTED = {"spin": (1.005, 0.081), "figure_eight": (0.781, 0.310), "three_zones": (8.821, 6.438)}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from odometry.report import figure
+from odometry.report.drawing import figure
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features import feature_jobs
 from terrain.classification.features.features import feature_matrix

@@ -12,9 +12,9 @@ from odometry.checks.evidence.scatter import scattered
 from odometry.checks.statistics.measured_between import gaps_between
 from odometry.checks.statistics.outliers import excursions, pose_outliers, without_spikes
 from odometry.run import Run
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.in_motion import moving_samples
-from odometry.windows.spans import touched
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.in_motion import moving_samples
+from odometry.windows.recorded.spans import touched
 
 LONGER_S = (1.0, 2.0)  # windows
 EMPTY = 1.5  # usual periods, from which cells between two yaw rates are empty

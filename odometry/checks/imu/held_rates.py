@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.windows.spans import constant_spans
+from odometry.windows.recorded.spans import constant_spans
 
 DEAD_S = 1.0
 SAME = 1e-9  # rad/s

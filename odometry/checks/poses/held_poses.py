@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.windows.spans import constant_spans, runs_of, within
+from odometry.windows.recorded.spans import constant_spans, runs_of, within
 
 FROZEN_S = 1.5
 FILTERED_S = 3.0  # a median of 15 poses at 10 Hz holds them for 1.5 s where a robot slips

@@ -22,7 +22,7 @@ from odometry.checks.poses.steps import (
     step_sizes,
     without_window_changes,
 )
-from odometry.windows.spans import runs_of, within
+from odometry.windows.recorded.spans import runs_of, within
 
 LEAST_JUMP_M = 0.4
 LEAST_WITHOUT_HEADING_M = 1.0  # where no heading says which way the robot drove, or it slides

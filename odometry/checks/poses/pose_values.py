@@ -13,7 +13,7 @@ from odometry.checks.findings.undo import times
 from odometry.checks.poses.coarse_positions import coarse_positions
 from odometry.checks.poses.position_noise import noisy_positions
 from odometry.checks.units.unit_findings import beyond_treads
-from odometry.windows.interpolated import FEWEST, MOST, interpolated, line_ends, on_lines
+from odometry.windows.recorded.interpolated import FEWEST, MOST, interpolated, line_ends, on_lines
 
 EARTH_M = (6.2e6, 6.5e6)  # distance from the centre of the earth
 MAP_M = 1e5  # coordinates above are of a map of the country (UTM)

@@ -10,9 +10,9 @@ from odometry.checks.poses.pose_jumps import slip_episode
 from odometry.checks.treads.tread_motion import times
 from odometry.errors import WindowError
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import Record, position_record_of, record_of
-from odometry.windows.spans import runs_of
-from odometry.windows.stuck import NEAR_M, stuck_poses
+from odometry.windows.recorded.record import Record, position_record_of, record_of
+from odometry.windows.recorded.spans import runs_of
+from odometry.windows.recorded.stuck import NEAR_M, stuck_poses
 
 MOVING = 0.05  # of the ordinary fastest speed: slower, the robot stands before or after
 BESIDE_S = 2.0  # of what was said: the moment of an episode lies anywhere in it

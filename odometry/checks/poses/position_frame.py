@@ -14,7 +14,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.heading import middle_rad
 from odometry.checks.evidence.once import once
-from odometry.windows.in_motion import moving_windows
+from odometry.windows.recorded.in_motion import moving_windows
 
 LEAST_WINDOWS = 40
 BLOCKS = 8  # of the recording; each is left out once (jackknife), as slip and noise last a while

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.statistics.measured_between import measured_between
-from odometry.windows.spans import touched
+from odometry.windows.recorded.spans import touched
 
 GRID_S = 0.05
 SMOOTHED_S = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)  # slip on ice and wind look like the longest

@@ -17,8 +17,8 @@ from odometry.checks.poses.steps import (
     rate_of,
     step_sizes,
 )
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import runs_of, within
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.spans import runs_of, within
 
 LEAST_JUMP_RAD = np.radians(25)
 LEAST_STEPS = 20

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.recorded.gaps import odometry_gaps
 
 OFTEN = 20
 LIMIT = 0.3  # of the median change of a log of changes, that its smallest ones have at least

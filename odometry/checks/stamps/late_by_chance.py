@@ -9,7 +9,7 @@ from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
 from odometry.late_rows import LateRows, late_rows
 from odometry.run import Run, with_stamps
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
 HELD_UP = 0.5  # of the period, by which a row is late

@@ -19,7 +19,7 @@ from odometry.checks.statistics.lag import Lag, Rate, lag_of_rates
 from odometry.checks.statistics.measured_between import measured_between
 from odometry.positions.timing import timings_of
 from odometry.run import Run
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.recorded.gaps import odometry_gaps
 
 LEAST_WIDTH_S = 0.5
 MOST_LAG_S = 3.5

@@ -7,8 +7,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import touched
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.spans import touched
 
 LONG_S = 1.0  # from which a time without rows is noted
 # A log of changes has rows at odd times: of an even one 95 in 100 rows follow within two periods.

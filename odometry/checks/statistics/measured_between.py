@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.arrays import FloatArray, median
-from odometry.windows.spans import touched
+from odometry.windows.recorded.spans import touched
 
 # Between samples, or usual periods: the longer of both is no gap, and values between lie on a line.
 LONGEST_S, LONGEST = 0.5, 3.0

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.windows.in_motion import moving_samples
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.in_motion import moving_samples
+from odometry.windows.recorded.spans import runs_of
 
 NEIGHBOURS = 4.0  # a spike exceeds both neighbours by this many ordinary steps (99 in 100)
 OF_FASTEST = 0.6  # and by this share of the ordinary fastest value (99 in 100)

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, median
 from odometry.checks.statistics.least_squares import Columns, least_squares, of_products
-from odometry.windows.in_motion import moving_windows
+from odometry.windows.recorded.in_motion import moving_windows
 
 ROUNDS = 8
 CUTOFF = 3.0  # standard deviations, estimated by the median, beyond which a window is left out

@@ -10,8 +10,8 @@ from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.treads.tread_motion import BLOCKED, is_read, moves_differently, times
 from odometry.checks.turns.gyroscope_bias import measured_bias_rad_s
-from odometry.windows.blocked_turns import BLOCKED_S, STANDS
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.blocked_turns import BLOCKED_S, STANDS
+from odometry.windows.recorded.spans import runs_of
 
 TURNS = 0.1  # of the ordinary fastest speed, by which the treads differ in a turn
 TURNED = 0.3  # share of an ideal drive's turn, by which the gyroscope shows one

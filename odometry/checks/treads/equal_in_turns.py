@@ -10,7 +10,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.statistics.relation import relation
 from odometry.checks.turns.measured_turns import MeasuredTurns, measured_turns
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 SHARP = 0.3  # of the sharpest turns: a robot that slips a little turns less
 # A robot follows its treads later by less: then it turns on while they are equal again.

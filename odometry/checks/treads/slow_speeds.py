@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.turns.measured_turns import measured_turns
-from odometry.windows.spans import runs_of, touched
+from odometry.windows.recorded.spans import runs_of, touched
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
 MOSTLY = 0.75  # share of the windows of such times in which the tread is slow

@@ -10,7 +10,7 @@ from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.statistics.relation import relation
 from odometry.checks.treads.slow_speeds import or_slow, slow_speeds_zero
 from odometry.checks.turns.measured_turns import STUCK_S, measured_turns
-from odometry.windows.spans import constant_spans, runs_of
+from odometry.windows.recorded.spans import constant_spans, runs_of
 
 STANDING = 0.01  # of the ordinary fastest speed: noise of a tread that stands
 # Share of the rows with a slower speed that is not near zero, where slower ones read as the kept

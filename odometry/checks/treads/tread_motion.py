@@ -9,8 +9,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.statistics.relation import Relation, relation
-from odometry.windows.gaps import REPEATS
-from odometry.windows.spans import constant_spans, within
+from odometry.windows.recorded.gaps import REPEATS
+from odometry.windows.recorded.spans import constant_spans, within
 
 BOTH_STUCK_S = 3.0  # held commands of heavy faults in simulations contradict for up to 2.4 s
 CONTRADICTED = 5.0  # times the usual residual

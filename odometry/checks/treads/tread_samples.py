@@ -11,7 +11,7 @@ from odometry.checks.findings.undo import TREADS, changed, in_turn
 from odometry.checks.statistics.outliers import peaks, spikes
 from odometry.checks.treads.slow_speeds import EDGE, least_read_m_s
 from odometry.speed_step import step_of, tick_of
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning
 # Share of the speeds in motion that are slower than those beside zeros: of lost messages a half.

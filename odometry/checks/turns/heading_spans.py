@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.windows.spans import touched
+from odometry.windows.recorded.spans import touched
 
 LONGEST = 1.2  # times the length that was requested
 LEAST = 30  # spans

@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.statistics.relation import relation
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 STUCK_S = 2.0  # that a tread keeps its value, and that another sensor contradicts it
 MOVING = 0.1  # of the ordinary fastest speed, of either tread: at rest all sensors agree

@@ -8,8 +8,8 @@ from odometry.checks.evidence.heading import Heading, middle_yaw
 from odometry.checks.evidence.motion import Motion, motion_between
 from odometry.checks.evidence.scatter import noise_of_ends
 from odometry.checks.statistics.relation import Relation, relation
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.spans import touched
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.recorded.spans import touched
 
 WINDOW_S = 1.0  # so long that a robot which follows its treads later, or coasts, hardly counts
 FARTHER = 1.1  # than the treads read, by their scale and that of the poses

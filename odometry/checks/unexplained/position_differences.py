@@ -8,7 +8,7 @@ from odometry.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.once import once
 from odometry.checks.poses.steps import reckoned, without_window_changes
-from odometry.windows.in_motion import moving_samples
+from odometry.windows.recorded.in_motion import moving_samples
 
 SPAN_S = 10.0
 LEAST_M = 1.5  # besides the share of the travel

@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.statistics.relation import relation
 from odometry.checks.turns.measured_turns import measured_turns
-from odometry.windows.spans import touched
+from odometry.windows.recorded.spans import touched
 
 # Rows of a stretch, and of them those in which both speeds are new ones, and those that differ: of
 # coarse encoders a few speeds take turns. No stretch of 75 real recordings repeats another one.

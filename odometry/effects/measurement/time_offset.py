@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.effects.commands.late_treads import BY_GYROSCOPE
 from odometry.effects.interface.base import Effect, EffectParameter, MeasurementEffect
 from odometry.effects.interface.recorded import Recorded, Reported
-from odometry.windows.measured_poses import positions_at
+from odometry.windows.recorded.measured_poses import positions_at
 
 
 class TimeOffset(MeasurementEffect):

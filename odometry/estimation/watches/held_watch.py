@@ -12,7 +12,7 @@ from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, YAW
 from odometry.estimation.watches import stuck_watch
 from odometry.estimation.watches.stuck_watch import Pose, StuckWatch
 from odometry.geometry.angles import wrap_one
-from odometry.windows.stuck import TIMES
+from odometry.windows.recorded.stuck import TIMES
 
 # A pose is where treads and gyroscope led within so many standard deviations of slip, and at most
 # these shares of the travel and of the turn: of 89 that came back in development 73 were within the

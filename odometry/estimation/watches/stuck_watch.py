@@ -17,7 +17,7 @@ from odometry.estimation.other_places import OtherPlace
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap_one
-from odometry.windows.stuck import LEAST_S, NEAR_M, NEAR_RAD, TIMES
+from odometry.windows.recorded.stuck import LEAST_S, NEAR_M, NEAR_RAD, TIMES
 
 SIGMAS = 4.0  # poses within these, or the distances by which windows leave poses out, stay
 LEAST_POSES = 3  # that stay, once treads have led away

@@ -13,7 +13,7 @@ from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.table import Table
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.recorded.gaps import odometry_gaps
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")
 ACCEL = ("accel_x", "accel_y", "accel_z")

@@ -10,8 +10,8 @@ from odometry.effects.interface.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.models.inputs import Inputs
 from odometry.run import UNKNOWN
-from odometry.windows.dense import DenseWindows
-from odometry.windows.motion import level_path
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.travel.motion import level_path
 
 LASTING_S = 60.0
 PERIOD_S = 0.05

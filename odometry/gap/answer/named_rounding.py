@@ -13,7 +13,7 @@ from odometry.gap.name.verdict import within_noise
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import ends_of
 from odometry.gap.prepare.statistic import Gap, Shown, floor_there, gap_m, gap_of
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def named_rounding(

@@ -11,7 +11,7 @@ from odometry.effects.interface.in_course import CommandsInCourse, MotionInCours
 from odometry.effects.interface.time_course import FromAMoment
 from odometry.effects.motion.terrain import Terrain
 from odometry.gap.answer.result import Equivalent
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 TERRAIN = Terrain.name
 NEAR_M = 1.0  # of a path: nearer it is the same place

@@ -26,7 +26,7 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.simulate import simulated_poses
 from odometry.gap.solve import differences
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 @dataclass(frozen=True)

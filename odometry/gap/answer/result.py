@@ -12,7 +12,7 @@ from odometry.gap.locate.locate import Location
 from odometry.gap.name.verdict import Refusal
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import Gap
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.simulate import all_residuals
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 POSITIONS, YAW, GYROSCOPE = "positions", "the yaw", "the gyroscope"
 LEAST_PIECES = 4  # of the runs: fewer do not say how uncertain a strength is

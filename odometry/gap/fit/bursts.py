@@ -23,8 +23,8 @@ from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses
 from odometry.gap.prepare.simulate import all_residuals_of_each
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
 
 InCourse = CommandsInCourse | MotionInCourse
 STEPS = 8  # of a window: a quarter of a second of two

@@ -14,7 +14,7 @@ from odometry.gap.fit.own_values import PARITIES, by_turns, with_values_of_each_
 from odometry.gap.prepare.measured import Measured, at_fewer_poses
 from odometry.gap.prepare.responses import Responses, columns_of, simulated_scenes
 from odometry.gap.prepare.statistic import gap_m, sure_sum
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 ADDED_TO = (  # components, and what they grow with
     *((TREADS, "speed"), (("left",), "speed"), (("right",), "speed"), (("v_x",), "v_x")),

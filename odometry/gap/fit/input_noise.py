@@ -15,7 +15,7 @@ from odometry.gap.fit.contest import cost_of
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.prepare.measured import Measured
 from odometry.run import Run
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 SEED = 0
 ORDER = 3  # of differences: a speed that changes steadily leaves none

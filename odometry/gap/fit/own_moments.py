@@ -21,7 +21,7 @@ from odometry.gap.fit.own_values import (
 )
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import squared_errors
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 SPACING_S = 1.0  # of the moments that are searched
 BEFORE = 0.05  # of the way of a run: what begins earlier cannot be told from what is always there

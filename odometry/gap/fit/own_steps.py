@@ -10,7 +10,7 @@ from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.effects.measurement.pose_stamps import breaks_s
 from odometry.effects.measurement.reference_step import OF_EACH, ReferenceStep
 from odometry.gap.prepare.simulate import path_of, poses_on
-from odometry.windows.dense import DenseWindows, off_measured
+from odometry.windows.dense.dense import DenseWindows, off_measured
 
 ROUNDS = 3  # of linearising a size
 

@@ -17,8 +17,8 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.measured import with_fewer_poses
 from odometry.gap.prepare.responses import Responses, columns_of, simulated_scenes, whitened
 from odometry.gap.prepare.simulate import whitened_residuals
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
 
 OWN = (ResidualOfEachRun, OfEachRun)
 ROUNDS = 2  # of linearising the motion: what is added is small

@@ -14,7 +14,7 @@ from odometry.gap.locate.regions import Region, regions
 from odometry.gap.locate.variables import Variable, window_variables
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import ends_of
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 __all__ = ["Location", "Predictor", "Region", "locate"]
 

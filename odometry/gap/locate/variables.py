@@ -10,7 +10,7 @@ from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.geometry.angles import wrap
 from odometry.run import UNKNOWN
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it
 STRAIGHT_RAD_S = 0.05  # windows of slower turns are straight

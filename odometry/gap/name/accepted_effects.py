@@ -27,7 +27,7 @@ from odometry.gap.name.verdict import (
     within_noise,
 )
 from odometry.gap.prepare.statistic import Gap, Shown, gap_of, root_mean_square
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 class Standing(Search):

@@ -10,7 +10,7 @@ from odometry.gap.fit.own_moments import observed_s
 from odometry.gap.name.in_calibration import in_calibration
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import reported_of
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def offered_effects(scenes: Sequence[DenseWindows], calibration: Calibration) -> tuple[Effect, ...]:

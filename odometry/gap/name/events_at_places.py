@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.effects.interface.time_course import InBursts
 from odometry.gap.config import GapConfig
 from odometry.gap.name.places import finest_grid
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 EVERY_S = 0.2
 LEAST_S = 1.0  # of other visits, that say something of a place

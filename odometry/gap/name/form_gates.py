@@ -20,7 +20,7 @@ from odometry.gap.fit.agreement import POSITIONS, Disagreement
 from odometry.gap.fit.evenness import Unevenness
 from odometry.gap.locate.region_words import noun_of
 from odometry.gap.prepare.simulate import run_of
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def is_unbeaten(gain: float, refused: str, of_refused: float, margin: float) -> str:

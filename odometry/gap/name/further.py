@@ -27,8 +27,8 @@ from odometry.gap.name.verdict import raises_measured, within_noise
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import whitened_residuals
 from odometry.gap.prepare.statistic import sure_sum
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
 
 
 @dataclass

@@ -25,7 +25,7 @@ from odometry.effects.unknown.residual import (
 from odometry.effects.unknown.residual_variables import REPEATED, WHAT_WENT_BEFORE
 from odometry.gap.config import GapConfig
 from odometry.gap.name.places import maps
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 MOTIONS = (  # components, each by what it may grow with
     *(("v_x", ""), ("v_x", "v_x"), ("v_x", "omega"), ("v_y", ""), ("v_y", "speed")),

@@ -13,8 +13,8 @@ from odometry.gap.prepare.calibration import TOGETHER_S, Calibration
 from odometry.gap.prepare.pieces import pieces
 from odometry.gap.prepare.simulate import run_of, whitened_residuals
 from odometry.gap.prepare.statistic import sure_sum
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import Noise, whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import Noise, whitening
 
 PARTS = (0.25, 0.5, 0.75, 1.0)  # of what the effect may always be: stamps are late, and uneven
 BEST = 2  # stretches of the calibration runs without which it must still pay

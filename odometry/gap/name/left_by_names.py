@@ -15,7 +15,7 @@ from odometry.gap.name.search import Search
 from odometry.gap.prepare.end_residuals import ends_of
 from odometry.gap.prepare.measures import is_shown, on_runs, other_measures
 from odometry.gap.prepare.statistic import Measure
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def leaves_no_gap(

@@ -23,7 +23,7 @@ from odometry.gap.name.further import Further
 from odometry.gap.name.general import general_candidates, shares_of_motion
 from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import Gap, root_mean_square
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 MANY = 5  # parameters of an effect that two others may share
 

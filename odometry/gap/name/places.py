@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray, IntArray
 from odometry.effects.unknown.residual import TREADS, WORLD
 from odometry.effects.unknown.residual_of_place import AXES, ResidualOfPlace
 from odometry.gap.config import GapConfig
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 FINER = np.sqrt(0.5)  # of one spacing to the next that is tried
 ADDED_TO = (  # components, and what they grow with

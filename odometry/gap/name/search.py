@@ -23,7 +23,7 @@ from odometry.gap.name.verdict import (
     closes_held_out,
 )
 from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 @dataclass

@@ -25,7 +25,7 @@ from odometry.gap.name.form import slow_course_instead
 from odometry.gap.name.search import Search
 from odometry.gap.name.verdict import come_anywhere, come_by_themselves, leaves_noise
 from odometry.gap.prepare.measured import at_fewer_poses
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 POSES = 10  # of a window, where smooth functions are chosen
 MOST_BURSTS = 2  # effects: each tread may have its own

@@ -29,7 +29,7 @@ from odometry.gap.prepare.statistic import (
     squared_errors,
     sure_sum,
 )
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from odometry.gap.prepare.calibration import Calibration, calibrated
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.statistic import squared_errors, sure_sum
 from odometry.models.icr import Icr, IcrByTerrain
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 LEAST_S = 20.0  # on a terrain, for its own ICRs
 

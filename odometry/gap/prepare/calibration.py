@@ -23,8 +23,8 @@ from odometry.gap.solve import (
 )
 from odometry.models.base import KinematicModel
 from odometry.run import Robot
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import Noise, estimated_noise, whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import Noise, estimated_noise, whitening
 
 LEAST_WINDOWS = 20
 TOGETHER_S = 10.0  # within which errors are taken as correlated

@@ -9,7 +9,7 @@ from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added
 from odometry.gap.prepare.responses import Responses, whiten, whitened
 from odometry.gap.prepare.simulate import rows_of_gyroscope, rows_of_poses
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 Model = tuple[Base, tuple[Added, ...]]
 At = Callable[[FloatArray], Model]

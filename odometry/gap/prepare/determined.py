@@ -10,8 +10,8 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.derivative import whitened_derivative
 from odometry.gap.solve import steps_within
 from odometry.identification.fitted import SHOWN, Undetermined
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
 
 MOST_SIZES = 1.0  # standard deviation of a combination of parameters, in their ordinary sizes
 SHOWN_SIGMAS = 1.0  # by which this deviation moves each measured number

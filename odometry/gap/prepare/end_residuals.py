@@ -11,8 +11,8 @@ from odometry.effects.interface.corrected import Added
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import residuals
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import end_variance
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import end_variance
 
 STEP = 1e-4  # of a base parameter, for a derivative
 RIDGE = 1e-6  # of the information of the calibration: it may leave a direction open

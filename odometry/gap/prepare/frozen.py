@@ -11,9 +11,9 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import residuals, simulated_poses
 from odometry.geometry import se2
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
-from odometry.windows.robust import NORMAL
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
+from odometry.windows.recorded.robust import NORMAL
 
 NEIGHBOURS = 7  # poses of a median: up to three off in a row do not move it
 LEAST_SIGMA_M = 1e-3  # of a reference

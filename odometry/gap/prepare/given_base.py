@@ -8,9 +8,9 @@ from odometry.gap.prepare.statistic import floor_of, gap_of
 from odometry.models.base import KinematicModel
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.dense import DenseWindows
-from odometry.windows.motion_ratios import FEWEST_WINDOWS, HORIZON_M, motion_ratios
-from odometry.windows.windows import windows_of
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.travel.motion_ratios import FEWEST_WINDOWS, HORIZON_M, motion_ratios
+from odometry.windows.travel.windows import windows_of
 
 
 def check_given(

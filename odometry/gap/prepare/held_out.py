@@ -8,7 +8,7 @@ from odometry.arrays import IntArray
 from odometry.errors import GapError
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.pieces import pieces
-from odometry.windows.dense import DenseWindows, thinned
+from odometry.windows.dense.dense import DenseWindows, thinned
 
 Apart = tuple[list[DenseWindows], list[DenseWindows]]  # to fit to, and to evaluate on
 STANDING_M_S = 0.05  # mean tread speed of a piece below which it shows no effect

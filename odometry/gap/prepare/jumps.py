@@ -14,8 +14,8 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import residuals
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import end_variance
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import end_variance
 
 STEP_S = 0.25  # over which a jump is looked for: maps do not all jump from one pose to the next
 LEEWAY = 0.5  # share of the travel of treads by which a robot may go ahead of them, or aside

@@ -14,8 +14,8 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.responses import whitened
 from odometry.gap.prepare.simulate import all_residuals_of_each, whitened_residuals
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import whitening
 
 TOGETHER = 10  # models
 

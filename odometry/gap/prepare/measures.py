@@ -7,7 +7,7 @@ from odometry.effects.interface.corrected import Added
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import Gap, Measure, Shown, floor_of, floor_there, gap_of
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def measures_of(

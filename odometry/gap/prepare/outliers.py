@@ -21,7 +21,7 @@ from odometry.gap.prepare.jumps import Jumps, jumps
 from odometry.gap.prepare.pieces import pieces
 from odometry.gap.prepare.simulate import residuals
 from odometry.gap.prepare.statistic import sure_sum
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 PLACES = 2  # numbers of a position
 

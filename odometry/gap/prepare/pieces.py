@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.arrays import IntArray
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def pieces(scene: DenseWindows, part_s: float) -> IntArray:

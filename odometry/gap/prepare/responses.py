@@ -17,9 +17,9 @@ from odometry.gap.prepare.simulate import (
     reported_of,
     rows_of_gyroscope,
 )
-from odometry.windows.between import between
-from odometry.windows.dense import DenseWindows, motion_from_first
-from odometry.windows.motion import linearised_level_path
+from odometry.windows.dense.dense import DenseWindows, motion_from_first
+from odometry.windows.recorded.between import between
+from odometry.windows.travel.motion import linearised_level_path
 
 STEP = 1e-6  # m, rad, rad/s: over which sensors are linearised
 MOST_SAMPLES = 1_000_000  # of changes at once: some ten arrays of their size are in memory then

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.positions.rounding import LEAST_STEP_M, exact_steps_m, rounding_step_m
 from odometry.run import Run
-from odometry.windows.dense import DenseWindows
+from odometry.windows.dense.dense import DenseWindows
 
 
 def rounded_m(run: Run) -> float:

@@ -17,8 +17,8 @@ from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
 from odometry.gap.prepare.rounding import rounded_m
 from odometry.positions.heading import Headed
 from odometry.run import Run
-from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense import DenseWindows, covered_s, dense_windows_of
+from odometry.windows.dense.averaged import averaged_windows
+from odometry.windows.dense.dense import DenseWindows, covered_s, dense_windows_of
 
 SHORTER = (1.0, 0.75, 0.5)  # of the usual duration of windows, where stretches ask for it
 SLOWEST_M_S = 0.05  # of a mean speed: a stationary robot has no horizon

@@ -15,9 +15,9 @@ from odometry.effects.interface.corrected import (
 )
 from odometry.effects.interface.recorded import Reported
 from odometry.effects.interface.time_course import run_numbers
-from odometry.windows.dense import DenseWindows, off_measured, poses_at
-from odometry.windows.measured_poses import YAW_FOUND
-from odometry.windows.motion import level_path
+from odometry.windows.dense.dense import DenseWindows, off_measured, poses_at
+from odometry.windows.recorded.measured_poses import YAW_FOUND
+from odometry.windows.travel.motion import level_path
 
 TOGETHER = 40  # rows of a window that are whitened at once
 

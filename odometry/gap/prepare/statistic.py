@@ -15,8 +15,8 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.end_residuals import mean_variances
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import residuals, rows_of_gyroscope
-from odometry.windows.dense import DenseWindows
-from odometry.windows.dense_noise import added_travel_m
+from odometry.windows.dense.dense import DenseWindows
+from odometry.windows.dense.dense_noise import added_travel_m
 
 RESAMPLES = 1000
 SEED = 0

@@ -24,7 +24,7 @@ from odometry.modes.turning_centres import (
     predicted_steps,
 )
 from odometry.run import Run
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 WINDOW_S = 8.0  # those of 4 s leave more to noise, those of 16 s are too few
 OVERLAP = 8  # every so many of the windows, which end each half second: they overlap by half

@@ -23,9 +23,9 @@ from odometry.modes.yaw_rate_noise import (
     estimated_yaw_rate_noise,
 )
 from odometry.run import Run
-from odometry.windows.dense import DenseWindows, off_measured, poses_at
-from odometry.windows.dense_noise import FIRST_GUESS, Noise, estimated_noise, whitening
-from odometry.windows.motion import level_path
+from odometry.windows.dense.dense import DenseWindows, off_measured, poses_at
+from odometry.windows.dense.dense_noise import FIRST_GUESS, Noise, estimated_noise, whitening
+from odometry.windows.travel.motion import level_path
 
 FIRST_LAG_S = 0.05
 USUAL = 0.3  # deviation of each gain from eq. 3: what the runs leave open stays near

@@ -12,8 +12,8 @@ from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains
-from odometry.windows.dense import DenseWindows, dense_windows_of, thinned
-from odometry.windows.gaps import odometry_gaps
+from odometry.windows.dense.dense import DenseWindows, dense_windows_of, thinned
+from odometry.windows.recorded.gaps import odometry_gaps
 
 HORIZONS_S = (4.0, 2.0)  # of windows, the second where poses are chained for less than the first
 LEAST_S = 10.0  # of driving in each mode, in windows, and of its turns to each side

@@ -36,7 +36,7 @@ def draw(
     from odometry.errors import OdometryError
     from odometry.outputs.output_file import picture_source
     from odometry.positions.heading import headed
-    from odometry.report.icr_picture import save_identified_icrs
+    from odometry.report.icrs.icr_picture import save_identified_icrs
 
     try:
         with_yaw = headed(runs).runs
@@ -87,7 +87,7 @@ def print_identification(found: "Identification") -> None:
     from odometry.identification.position_notes import position_notes
     from odometry.identification.report import report
     from odometry.identification.shorter_windows import shortened
-    from odometry.windows.record import words
+    from odometry.windows.recorded.record import words
 
     for name, of_terrain in found.terrains.items():
         if of_terrain.mixed:
@@ -165,7 +165,7 @@ def require_determined(found: "Identification") -> None:
     from odometry.errors import IdentificationError
     from odometry.identification.identify import SIMPLE, simpler_model
     from odometry.identification.report import in_short
-    from odometry.windows.record import words
+    from odometry.windows.recorded.record import words
     from terrain.cli.recordings import checks_made
 
     try:

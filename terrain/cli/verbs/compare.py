@@ -82,7 +82,7 @@ def _print_splits(comparison: "Comparison") -> None:
 
 def _print_place(comparison: "Comparison", place: "Place") -> None:
     """Print what the errors of one place say, and what to know of them."""
-    from odometry.windows.record import words
+    from odometry.windows.recorded.record import words
 
     click.echo(f"{place.title}:")
     for sentence in comparison.sentences_at(place):
@@ -172,7 +172,7 @@ def compare(
     from odometry.comparison.config import ComparisonConfig
     from odometry.comparison.files import write_comparison
     from odometry.identification.start import SolverConfig
-    from odometry.report.comparison_page import write_comparison_report
+    from odometry.report.comparison.comparison_page import write_comparison_report
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import checks_made, read_runs
 

@@ -80,7 +80,7 @@ def gap(
     from odometry.gap.gap import find_gap
     from odometry.gap.prepare.uncertain_base import believed_model
     from odometry.gap.show.files import write_gap
-    from odometry.report.gap_page import write_gap_report
+    from odometry.report.gap.gap_page import write_gap_report
     from terrain.cli.outputs import about, claim_folder
     from terrain.cli.recordings import checks_made, read_runs
 

@@ -106,7 +106,7 @@ def _one(
 ) -> None:
     from odometry.modes.show.files import write_modes
     from odometry.modes.show.words import in_short, sentences
-    from odometry.report.modes_page import write_modes_report
+    from odometry.report.modes.modes_page import write_modes_report
     from terrain.cli.outputs import about
     from terrain.cli.recordings import checks_made
 
@@ -136,7 +136,7 @@ def _several(
     from odometry.errors import OdometryError
     from odometry.modes.show.files import write_modes, write_runs
     from odometry.modes.show.words import in_short, sentences
-    from odometry.report.modes_page import write_modes_report
+    from odometry.report.modes.modes_page import write_modes_report
     from terrain.cli.outputs import about, folder_names
     from terrain.cli.recordings import checks_made
 

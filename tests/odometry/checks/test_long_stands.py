@@ -10,7 +10,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.statistics.outliers import pose_outliers, spikes
 from odometry.checks.statistics.relation import relation
-from odometry.windows.in_motion import moving_samples, moving_windows
+from odometry.windows.recorded.in_motion import moving_samples, moving_windows
 from tests.odometry.checks.drives import PERIOD_S, drive
 
 

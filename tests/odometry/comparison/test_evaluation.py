@@ -18,7 +18,7 @@ from odometry.models.catalogue import MODELS
 from odometry.run import Run
 from odometry.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.recorded.run_inputs import inputs_of
 from odometry.windows.window_errors import window_errors
 
 

@@ -18,7 +18,7 @@ from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.pipeline import ConstantTerrain, replay
 from odometry.run import Run
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.recorded.run_inputs import inputs_of
 
 ICRS = {"y_left": 0.4, "y_right": -0.3, "x_icr": 0.05, "alpha_left": 0.9, "alpha_right": 0.8}
 STAMPS_S = np.arange(0, 6.01, 0.1)

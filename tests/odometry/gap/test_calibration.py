@@ -11,7 +11,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import calibrated
 from odometry.models.icr import Icr
 from odometry.models.symmetric import DifferentialDrive, IcrSymmetric
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 TRUE = np.array([0.45, -0.42, 0.02, 1.0, 1.0, 0.0])  # the robot of the scenes; no latency
 SEEDS = range(600, 608)

@@ -10,7 +10,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import calibrated
 from odometry.gap.prepare.determined import require_determined
 from odometry.models.icr import Icr
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 
 def calibration_of(run):

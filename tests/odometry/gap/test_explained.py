@@ -10,7 +10,7 @@ from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name.names import explained
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import floor_of
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 CONFIG = GapConfig()
 

@@ -14,7 +14,7 @@ from odometry.gap.prepare.measured import measured_of
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
-from odometry.windows.dense import dense_windows_of, thinned
+from odometry.windows.dense.dense import dense_windows_of, thinned
 from tests.blind.cases import make_case
 
 CONFIG = GapConfig()

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.statistic import Gap, floor_there
-from odometry.windows.dense_noise import Noise
+from odometry.windows.dense.dense_noise import Noise
 
 FLOOR = Gap(0.03, 0.02, 0.05)
 

@@ -14,8 +14,8 @@ from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.scenes import alike
 from odometry.gap.prepare.simulate import all_residuals
 from odometry.models.icr import Icr
-from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.averaged import averaged_windows
+from odometry.windows.dense.dense import dense_windows_of
 
 CONFIG = GapConfig()
 BIAS_RAD_S, DELAY_STEPS, PERIOD_S = 0.013, 3, 0.05

@@ -11,7 +11,7 @@ from odometry.gap.prepare.jumps import jumps
 from odometry.gap.prepare.outliers import closes, outliers_of
 from odometry.gap.prepare.scenes import cleaned_runs, without_outliers
 from odometry.gap.prepare.statistic import squared_errors
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 CONFIG = GapConfig()
 AT = np.array([100, 250, 333, 520, 700])

@@ -12,7 +12,7 @@ from odometry.gap.prepare.measures import measures_of
 from odometry.gap.prepare.statistic import Measure
 from odometry.gap.show.files import content_of
 from odometry.gap.show.lead import lead
-from odometry.report.gap_tables import closing_grid
+from odometry.report.gap.gap_tables import closing_grid
 
 ROUGH_M = 0.06  # of a measured position
 

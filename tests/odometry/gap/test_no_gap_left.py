@@ -20,7 +20,7 @@ from odometry.gap.name.left_by_names import leaves_no_gap
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import on_runs
 from odometry.gap.prepare.statistic import Measure, floor_of
-from odometry.windows.dense_noise import Noise
+from odometry.windows.dense.dense_noise import Noise
 
 CONFIG = GapConfig()
 CALM = Noise(0.003, 0.0012, 1e-4, 1e-5)  # a third of what the poses have

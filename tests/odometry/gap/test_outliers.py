@@ -10,7 +10,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.prepare.frozen import frozen_steps, isolated
 from odometry.gap.prepare.outliers import closes, outliers_of
 from odometry.gap.prepare.scenes import cleaned_runs, without_outliers
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 CONFIG = GapConfig()
 OFF = np.arange(20, 780, 37)  # in some windows the last pose, in others one between

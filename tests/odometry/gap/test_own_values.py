@@ -15,7 +15,7 @@ from odometry.gap.fit.own_values import by_turns, damped
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.responses import columns_of, simulated_scenes
 from odometry.gap.prepare.statistic import gap_of
-from odometry.windows.averaged import averaged_windows
+from odometry.windows.dense.averaged import averaged_windows
 
 CONFIG = GapConfig()
 NOISE_M = 0.02  # of the position at the end of a window

@@ -13,8 +13,8 @@ from odometry.effects.unknown.residual import COMPONENTS, Residual
 from odometry.gap.prepare import responses
 from odometry.gap.prepare.responses import columns_of, simulated_scenes
 from odometry.gap.prepare.simulate import whitened_residuals
-from odometry.windows.averaged import averaged_windows
-from odometry.windows.dense_noise import whitening
+from odometry.windows.dense.averaged import averaged_windows
+from odometry.windows.dense.dense_noise import whitening
 
 STEP = 1e-5
 TERMS = tuple((component, number) for component in COMPONENTS for number in (0, 3))

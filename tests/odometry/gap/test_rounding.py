@@ -11,7 +11,7 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.rounding import rounding_notes
 from odometry.gap.prepare.scenes import scene_of
 from odometry.gap.prepare.statistic import floor_of, floor_there, gap_of
-from odometry.windows.dense_noise import Noise, end_variance, estimated_noise, whitening
+from odometry.windows.dense.dense_noise import Noise, end_variance, estimated_noise, whitening
 from tests.odometry.conftest import scaled
 
 CONFIG = GapConfig()

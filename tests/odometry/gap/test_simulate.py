@@ -12,9 +12,9 @@ from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.evaluation.open_loop import open_loop
 from odometry.gap.prepare.simulate import reported_of, residuals, simulated_poses
 from odometry.geometry import se2
-from odometry.windows.dense import dense_windows_of
-from odometry.windows.measured_poses import YAW_FOUND
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.dense.dense import dense_windows_of
+from odometry.windows.recorded.measured_poses import YAW_FOUND
+from odometry.windows.recorded.run_inputs import inputs_of
 
 ARM = np.array([0.4, -0.3])
 WIDTH_M = 0.87  # between the ICRs of the true robot

@@ -16,7 +16,7 @@ from odometry.gap.show.advice import faults_of_sensors
 from odometry.gap.show.files import content_of
 from odometry.gap.show.lead import lead
 from odometry.gap.show.words import sentences
-from odometry.report.gap_page import write_gap_report
+from odometry.report.gap.gap_page import write_gap_report
 
 
 def report(run, name, level=Level.WARNING):

@@ -9,8 +9,8 @@ from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import windows_of
 
 MODEL = MODELS["icr_inertia"]
 PLACE = [parameter.name for parameter in MODEL.parameters].index("h")

@@ -9,7 +9,7 @@ from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 
 ONE_START = SolverConfig(starts=1)
 ICE = {"y_left": 0.7, "y_right": -0.6, "x_icr": -0.05, "alpha_left": 0.8, "alpha_right": 0.9}

@@ -8,7 +8,7 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 
 ROBOT = Robot(0.6, length=0.9, width=0.7, wheel_radius=0.15, mass=50.0)
 

@@ -9,8 +9,8 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import window_motion
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.motion import window_motion
+from odometry.windows.travel.windows import windows_of
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,8 @@ from odometry.identification.profile import with_profiles
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.windows.config import WindowConfig
-from odometry.windows.stretches import Stretches
-from odometry.windows.windows import Windows
+from odometry.windows.stretches.stretches import Stretches
+from odometry.windows.travel.windows import Windows
 from tests.odometry.positions_drives import ICR, drive, emptied
 
 ONE_START = SolverConfig(starts=1)

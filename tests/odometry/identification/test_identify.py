@@ -13,8 +13,8 @@ from odometry.models.icr import Icr
 from odometry.parameters import read_parameters, write_parameters
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
+from odometry.windows.travel.windows import windows_of
 from odometry.windows.window_errors import window_errors
-from odometry.windows.windows import windows_of
 
 ONE_START = SolverConfig(starts=1)
 ICE = {"y_left": 0.7, "y_right": -0.6, "x_icr": -0.05, "alpha_left": 0.8, "alpha_right": 0.9}

@@ -12,8 +12,8 @@ from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances, window_covariances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances, window_covariances
+from odometry.windows.travel.windows import windows_of
 
 FREE = np.array([True, False, True, False, True])
 

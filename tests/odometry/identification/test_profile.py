@@ -12,7 +12,7 @@ from odometry.identification.problem import Problem
 from odometry.identification.profile import with_profiles
 from odometry.identification.start import SolverConfig
 from odometry.models.icr_slope import IcrSlope
-from odometry.windows.noise import pose_variances
+from odometry.windows.travel.noise import pose_variances
 
 CONFIG = SolverConfig(loss="squares", starts=2)
 MODEL = "icr_symmetric"

@@ -9,7 +9,7 @@ from odometry.digits import within_interval, within_sigma
 from odometry.identification.identify import identify
 from odometry.identification.report import correlations, in_short, report
 from odometry.identification.start import SolverConfig
-from odometry.windows.stretch_noise import UNKNOWN_NOISE
+from odometry.windows.stretches.stretch_noise import UNKNOWN_NOISE
 
 
 @pytest.fixture(scope="module")

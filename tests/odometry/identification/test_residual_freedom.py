@@ -6,8 +6,8 @@ import pytest
 from odometry.identification.problem import Problem
 from odometry.identification.uncertainty import residual_freedom
 from odometry.models.icr import Icr
-from odometry.windows.noise import by_pose_noise, pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import by_pose_noise, pose_variances
+from odometry.windows.travel.windows import windows_of
 
 
 @pytest.fixture(scope="module")

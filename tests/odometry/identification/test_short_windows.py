@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from odometry.identification.plausibility import WHY, short_windows
-from odometry.windows.record import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.record import CHANGE_OF_WINDOW, POSE_GAP, STATIONARY
+from odometry.windows.travel.windows import windows_of
 
 
 @pytest.fixture(scope="module")

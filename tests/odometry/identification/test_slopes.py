@@ -18,8 +18,8 @@ from odometry.identification.start import SolverConfig
 from odometry.models.icr_slope import IcrSlope
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import windows_of
 
 NAMES = ("y_left", "y_right", "x_icr", "alpha_left", "alpha_right", "lambda_1", "lambda_2")
 TILT_RAD = 0.15

@@ -13,8 +13,8 @@ from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances
+from odometry.windows.travel.windows import windows_of
 
 NAMES = ("y_left", "y_right", "x_icr")
 FREE = np.array([True, True, True, False, False])

@@ -19,8 +19,8 @@ from odometry.identification.uncertainty import parameter_uncertainty, residual_
 from odometry.models.icr import Icr
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import pose_variances, window_covariances
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.noise import pose_variances, window_covariances
+from odometry.windows.travel.windows import windows_of
 
 SEEDS = range(40)
 RARE = 1e-3

@@ -16,7 +16,7 @@ from odometry.modes.checks.track_checks import (
 from odometry.modes.innovation_test import Innovations, mode_fit
 from odometry.modes.mode_set import UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.windows.spans import within
+from odometry.windows.recorded.spans import within
 from tests.odometry.modes.mode_examples import track
 
 STEP_S, SIZE = 0.02, 1500

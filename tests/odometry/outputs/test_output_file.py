@@ -10,7 +10,7 @@ from odometry.outputs.output_file import (
     picture_source,
 )
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.report.figure import save_figure
+from odometry.report.drawing.figure import save_figure
 
 ICR = {"y_left": 0.3, "y_right": -0.3, "x_icr": 0.0}
 

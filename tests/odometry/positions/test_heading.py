@@ -11,7 +11,7 @@ from odometry.positions.carrier import carrier_of
 from odometry.positions.heading import found_heading, headed
 from odometry.positions.positions_yaw import yaw_at_positions
 from odometry.positions.smoother import Way, filtered, smoothed
-from odometry.windows.measured_poses import YAW_FOUND, lacks_yaw
+from odometry.windows.recorded.measured_poses import YAW_FOUND, lacks_yaw
 from tests.odometry.positions_drives import drive, emptied
 
 

@@ -14,7 +14,7 @@ from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 from tests.odometry.positions_drives import ICR, drive, emptied
 
 CONFIG = ComparisonConfig(solver=SolverConfig(starts=1), draws=100)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
-from odometry.report.before_use import TITLE, before_use
+from odometry.report.drawing.before_use import TITLE, before_use
 
 DEGREES = Finding("yaw_in_degrees", Level.WARNING, "yaw spans 340", "It is in degrees", "Turn it")
 PAUSE = Finding("gap_in_odometry", Level.NOTE, "2 s are missing", "A pause", "Nothing to do")

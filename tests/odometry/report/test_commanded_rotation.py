@@ -2,13 +2,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from odometry.report.comparison_plots import (
+from odometry.report.comparison.comparison_plots import (
     CommandedRotation,
     commanded_rotation,
     difference_edges,
     plot_commanded_rotation,
 )
-from odometry.report.figure import LineStyle
+from odometry.report.drawing.figure import LineStyle
 
 STYLE = LineStyle("#0000FF")
 

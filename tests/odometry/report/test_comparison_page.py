@@ -11,8 +11,8 @@ from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
-from odometry.report.comparison_page import lead, write_comparison_report
-from odometry.report.comparison_tables import parameter_grid
+from odometry.report.comparison.comparison_page import lead, write_comparison_report
+from odometry.report.comparison.comparison_tables import parameter_grid
 from odometry.run import Run
 
 MODELS = ("differential_drive", "icr_symmetric", "icr_slope")

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from matplotlib.collections import PolyCollection
 
-from odometry.report.comparison_plots import plot_violins
-from odometry.report.figure import LineStyle
+from odometry.report.comparison.comparison_plots import plot_violins
+from odometry.report.drawing.figure import LineStyle
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000"), "few": LineStyle("#00FF00")}
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from odometry.report.figure import line_styles, save_figure
-from odometry.report.labels import label_points
+from odometry.report.drawing.figure import line_styles, save_figure
+from odometry.report.drawing.labels import label_points
 
 
 def draw(figure):
@@ -44,7 +44,9 @@ def test_settings_of_the_user_neither_reach_the_figure_nor_change(tmp_path):
 
 def test_pyplot_is_not_needed():
     """It would choose a window system and keep every figure."""
-    code = "import sys, odometry.report.figure; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = (
+        "import sys, odometry.report.drawing.figure; sys.exit('matplotlib.pyplot' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -21,11 +21,17 @@ from odometry.gap.name.general import general_candidates
 from odometry.gap.prepare.statistic import gap_of, squared_errors
 from odometry.gap.show.quantities import with_interval
 from odometry.gap.show.words import sentences
-from odometry.report.gap_figures import rolling_rms
-from odometry.report.gap_map import binned_rms, scale_of
-from odometry.report.gap_page import MEASURED_NAME, event_grids, rollout, rollouts, write_gap_report
-from odometry.report.gap_shapes import shape_of, shape_pictures
-from odometry.report.gap_tables import worst_grid
+from odometry.report.gap.gap_figures import rolling_rms
+from odometry.report.gap.gap_map import binned_rms, scale_of
+from odometry.report.gap.gap_page import (
+    MEASURED_NAME,
+    event_grids,
+    rollout,
+    rollouts,
+    write_gap_report,
+)
+from odometry.report.gap.gap_shapes import shape_of, shape_pictures
+from odometry.report.gap.gap_tables import worst_grid
 
 
 class Page(HTMLParser):

@@ -7,8 +7,8 @@ import numpy as np
 from odometry.effects.interface.corrected import Added
 from odometry.effects.unknown.residual_of_place import ResidualOfPlace
 from odometry.gap.answer.result import NamedEffect
-from odometry.report.gap_places import NEAR, map_of
-from odometry.report.gap_shapes import shape_pictures
+from odometry.report.gap.gap_places import NEAR, map_of
+from odometry.report.gap.gap_shapes import shape_pictures
 
 NODES = ((0, 0), (1, 0), (0, 1), (1, 1))
 

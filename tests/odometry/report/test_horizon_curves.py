@@ -1,7 +1,7 @@
 import numpy as np
 
-from odometry.report.comparison_plots import plot_against_horizon
-from odometry.report.figure import LineStyle
+from odometry.report.comparison.comparison_plots import plot_against_horizon
+from odometry.report.drawing.figure import LineStyle
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000", "dashed")}
 

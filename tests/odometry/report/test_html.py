@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.report.html import (
+from odometry.report.drawing.html import (
     Grid,
     Listing,
     Paragraph,

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from odometry.icrs.measured import MeasuredIcrs
-from odometry.report.icr_map import TURN_STYLES, frame_of, plot_icrs
-from odometry.report.icr_picture import save_icr_picture
+from odometry.report.icrs.icr_map import TURN_STYLES, frame_of, plot_icrs
+from odometry.report.icrs.icr_picture import save_icr_picture
 from odometry.run import Robot
 
 ROBOT = Robot(track_width=0.5, length=0.9, width=0.6)

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.text import Text
 
-from odometry.report.figure import LineStyle
-from odometry.report.labels import label_points, spread
+from odometry.report.drawing.figure import LineStyle
+from odometry.report.drawing.labels import label_points, spread
 
 NUMBERS = st.lists(
     st.tuples(st.floats(-100, 100), st.floats(1, 20)),

@@ -6,8 +6,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 
 from odometry.evaluation.stretches import Stretch
-from odometry.report.figure import LineStyle
-from odometry.report.map_plots import plot_ground, plot_paths
+from odometry.report.drawing.figure import LineStyle
+from odometry.report.drawing.map_plots import plot_ground, plot_paths
 from odometry.trajectory import Trajectory
 
 STYLES = {"a": LineStyle("#0000FF"), "$b^$": LineStyle("#FF0000", "dashed")}

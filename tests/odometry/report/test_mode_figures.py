@@ -11,17 +11,17 @@ from matplotlib.figure import Figure
 from odometry.modes.camera_prior import SeenTerrain
 from odometry.modes.followed import Followed, followed
 from odometry.modes.track import ModesConfig
-from odometry.report import mode_figures, mode_panels, modes_page
-from odometry.report.figure import LINE_STYLES, mode_colours
-from odometry.report.mode_figures import modes_picture, path_picture
-from odometry.report.mode_panels import (
+from odometry.report.drawing.figure import LINE_STYLES, mode_colours
+from odometry.report.modes import mode_figures, mode_panels, modes_page
+from odometry.report.modes.mode_figures import modes_picture, path_picture
+from odometry.report.modes.mode_panels import (
     draw_probabilities,
     draw_state,
     draw_strips,
     drawn_rows,
     mark_mode_changes,
 )
-from odometry.report.modes_page import MOST, innovations_picture, write_modes_report
+from odometry.report.modes.modes_page import MOST, innovations_picture, write_modes_report
 from tests.odometry.modes.mode_examples import run_of, track, traction_set, velocity_set
 
 MANY = tuple(f"_$wheel^${i}" for i in range(16))

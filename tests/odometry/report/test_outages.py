@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.report.labels import broken_at_outages
+from odometry.report.drawing.labels import broken_at_outages
 
 
 def test_a_line_breaks_in_the_middle_of_an_outage():

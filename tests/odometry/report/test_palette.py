@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from odometry.report.figure import (
+from odometry.report.drawing.figure import (
     LINE_STYLES,
     REFERENCE_STYLE,
     TERRAIN_TINTS,

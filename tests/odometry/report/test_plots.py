@@ -8,8 +8,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from odometry.evaluation.stretches import Stretch
-from odometry.report.figure import LineStyle
-from odometry.report.plots import (
+from odometry.report.drawing.figure import LineStyle
+from odometry.report.icrs.plots import (
     mark_changes,
     plot_error_distribution,
     plot_icr,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.report.speed_plane import (
+from odometry.report.comparison.speed_plane import (
     BINS,
     common_range,
     plot_speed_plane,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from odometry.report import labels as module
-from odometry.report.labels import thinned
+from odometry.report.drawing import labels as module
+from odometry.report.drawing.labels import thinned
 
 
 @pytest.fixture

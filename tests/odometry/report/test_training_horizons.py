@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.comparison.summary import Place, Summary
 from odometry.comparison.training_horizons import HorizonErrors
-from odometry.report.training_horizons import median_table, training_horizon_picture
+from odometry.report.comparison.training_horizons import median_table, training_horizon_picture
 
 
 def errors_of(medians, *, complete=True):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.windows.blocked_turns import blocked_spans
+from odometry.windows.recorded.blocked_turns import blocked_spans
 
 STAMPS_S = 0.05 * np.arange(800)
 WIDTH_M = 0.6

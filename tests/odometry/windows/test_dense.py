@@ -7,8 +7,8 @@ import pytest
 
 from odometry.errors import WindowError
 from odometry.gap.prepare.pieces import numbered_pieces, pieces
-from odometry.windows.dense import dense_windows_of, thinned
-from odometry.windows.record import ODOMETRY_GAP
+from odometry.windows.dense.dense import dense_windows_of, thinned
+from odometry.windows.recorded.record import ODOMETRY_GAP
 
 TWO_SECONDS = 10  # steps between poses at 5 Hz
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.windows.dense_noise import Factors, Noise, estimated_noise, whitening
+from odometry.windows.dense.dense_noise import Factors, Noise, estimated_noise, whitening
 
 DRAWS = 20_000
 NOISE = Noise(position_m=0.004, yaw_rad=0.003, wander_m=0.006, wander_rad=0.004)

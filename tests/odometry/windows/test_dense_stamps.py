@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from odometry.errors import WindowError
 from odometry.table import Table
-from odometry.windows.dense import dense_windows_of
+from odometry.windows.dense.dense import dense_windows_of
 
 HORIZON_S = 2.0
 DURATION_S = 60.0

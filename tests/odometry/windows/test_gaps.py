@@ -9,7 +9,7 @@ import pytest
 
 from odometry.run import Robot, Run
 from odometry.table import Table
-from odometry.windows.gaps import BY_GYROSCOPE, BY_POSES, SILENT, odometry_gaps
+from odometry.windows.recorded.gaps import BY_GYROSCOPE, BY_POSES, SILENT, odometry_gaps
 
 PERIOD_S = 0.05
 WIDTH_M = 0.5

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.frames import Frame
-from odometry.windows.gaps import GapsSoFar
+from odometry.windows.recorded.gaps import GapsSoFar
 
 
 def told(stamps_s, rows, speed_m_s=0.5):

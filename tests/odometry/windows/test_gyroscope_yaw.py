@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.windows.config import WindowConfig
-from odometry.windows.gyroscope_yaw import PathShape, yaw_rates_of
-from odometry.windows.record import position_record_of
+from odometry.windows.recorded.gyroscope_yaw import PathShape, yaw_rates_of
+from odometry.windows.recorded.record import position_record_of
 from tests.odometry.positions_drives import drive, emptied
 
 LENGTH_M = 5.0

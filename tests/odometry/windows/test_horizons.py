@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from odometry.windows.horizons import spatial_horizons
+from odometry.windows.travel.horizons import spatial_horizons
 
 
 def test_windows_by_hand():

@@ -8,8 +8,8 @@ import pytest
 
 from odometry.errors import WindowError
 from odometry.windows.config import WindowConfig
-from odometry.windows.dense import dense_windows_of
-from odometry.windows.record import (
+from odometry.windows.dense.dense import dense_windows_of
+from odometry.windows.recorded.record import (
     CHANGE_OF_TERRAIN,
     CHANGE_OF_WINDOW,
     POSE_GAP,
@@ -18,7 +18,7 @@ from odometry.windows.record import (
     summed,
     words,
 )
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 
 
 def test_a_window_counts_under_the_first_break_that_it_straddles():

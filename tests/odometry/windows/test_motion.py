@@ -9,10 +9,10 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
 from odometry.run import Robot, Run
-from odometry.windows import linear_motion
 from odometry.windows.config import WindowConfig
-from odometry.windows.motion import linearised_window_motion, window_motion
-from odometry.windows.windows import Windows, windows_of
+from odometry.windows.travel import linear_motion
+from odometry.windows.travel.motion import linearised_window_motion, window_motion
+from odometry.windows.travel.windows import Windows, windows_of
 
 STEP = 1e-5  # of a parameter's ordinary size; truncation and rounding are both below 1e-8
 COUNTED = {"contacts"}  # a whole number has no derivative

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from odometry.windows.config import WindowConfig
-from odometry.windows.noise import (
+from odometry.windows.travel.noise import (
     by_pose_noise,
     pose_variances,
     score_covariance,
     window_covariances,
 )
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 
 DRAWS = 20_000
 CONFIG = WindowConfig(stride=0.5, position_sigma_m=0.01, yaw_sigma_rad=0.005)

@@ -6,9 +6,9 @@ import pytest
 from odometry.errors import WindowError
 from odometry.run import UNKNOWN, Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.measured_poses import close_pairs
-from odometry.windows.record import UNKNOWN_TURNS, record_of
-from odometry.windows.run_inputs import inputs_of
+from odometry.windows.recorded.measured_poses import close_pairs
+from odometry.windows.recorded.record import UNKNOWN_TURNS, record_of
+from odometry.windows.recorded.run_inputs import inputs_of
 
 CONFIG = WindowConfig(pose_gap_s=0.5)
 SLOW = 2.0**-10  # [m/s]: turns too slow for their count to be in doubt
@@ -220,7 +220,8 @@ def test_turns_are_counted_once_and_headings_are_those_of_the_run(make_run, monk
     run, counts = Run.read(folder), []
     found = inputs_of(run).heading_rad
     monkeypatch.setattr(
-        "odometry.windows.turns.close_pairs", lambda *of: counts.append(1) or close_pairs(*of)
+        "odometry.windows.recorded.turns.close_pairs",
+        lambda *of: counts.append(1) or close_pairs(*of),
     )
     record = record_of(run, CONFIG)
     assert len(counts) == 1

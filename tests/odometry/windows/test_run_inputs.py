@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from odometry.run import Run
-from odometry.windows.run_inputs import attitude_of, inputs_of
+from odometry.windows.recorded.run_inputs import attitude_of, inputs_of
 
 WHOLE = """t,v_left,v_right,roll,pitch,accel_x,accel_y
 0,0.5,0.6,0.1,,1,

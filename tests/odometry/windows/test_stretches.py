@@ -8,19 +8,19 @@ import pytest
 from odometry.errors import WindowError
 from odometry.models.catalogue import MODELS
 from odometry.windows.config import WindowConfig
-from odometry.windows.measured_poses import lacks_yaw
-from odometry.windows.stretch_motion import (
+from odometry.windows.recorded.measured_poses import lacks_yaw
+from odometry.windows.stretches.stretch_motion import (
     linearised_shape_residuals,
     rotations,
     shape_residuals,
 )
-from odometry.windows.stretch_noise import (
+from odometry.windows.stretches.stretch_noise import (
     covariance_parts,
     known_covariance,
     likeliest_noise,
     whitening,
 )
-from odometry.windows.stretches import stretches_of
+from odometry.windows.stretches.stretches import stretches_of
 from tests.odometry.positions_drives import ICR, drive, emptied
 
 MODEL = MODELS["icr"]

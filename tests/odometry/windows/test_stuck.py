@@ -9,10 +9,10 @@ import pytest
 from odometry.identification.identify import identify
 from odometry.run import Run
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import STUCK, position_record_of, record_of
-from odometry.windows.stretches import position_record_with_yaw_rates
-from odometry.windows.stuck import stuck_poses
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.record import STUCK, position_record_of, record_of
+from odometry.windows.recorded.stuck import stuck_poses
+from odometry.windows.stretches.stretches import position_record_with_yaw_rates
+from odometry.windows.travel.windows import windows_of
 from tests.odometry.window_drives import ICRS, commands, icr_twist, noisy, write
 
 BEGIN_S, LASTS_S = 45.0, 8.0

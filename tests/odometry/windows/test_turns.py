@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from odometry.windows.config import WindowConfig
-from odometry.windows.record import UNKNOWN_TURNS
-from odometry.windows.turns import continuous_yaw, counted_turns
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.record import UNKNOWN_TURNS
+from odometry.windows.recorded.turns import continuous_yaw, counted_turns
+from odometry.windows.travel.windows import windows_of
 from tests.odometry.windows.turning_robot import turning_run
 
 SEEDS = range(4)

@@ -11,9 +11,9 @@ from odometry.models.icr import Icr
 from odometry.run import Robot, Run
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.gaps import odometry_gaps
-from odometry.windows.motion import linearised_window_motion, window_motion
-from odometry.windows.windows import windows_of
+from odometry.windows.recorded.gaps import odometry_gaps
+from odometry.windows.travel.motion import linearised_window_motion, window_motion
+from odometry.windows.travel.windows import windows_of
 
 VALUES = np.array([0.45, -0.36, 0.06, 0.97, 0.93])
 POSE_GAP_S = 0.5

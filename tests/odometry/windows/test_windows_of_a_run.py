@@ -8,7 +8,7 @@ import pytest
 
 from odometry.errors import WindowError
 from odometry.windows.config import WindowConfig
-from odometry.windows.windows import windows_of
+from odometry.windows.travel.windows import windows_of
 from tests.odometry.windows.test_windows import travel_between
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from odometry.report.figure import show_run_time
+from odometry.report.drawing.figure import show_run_time
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from terrain.cli.results import print_changes

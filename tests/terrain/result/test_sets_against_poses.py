@@ -12,8 +12,8 @@ from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
 from odometry.run import Robot, Run
 from odometry.table import Table
-from odometry.windows.motion import level_path
-from odometry.windows.motion_ratios import MotionRatios
+from odometry.windows.travel.motion import level_path
+from odometry.windows.travel.motion_ratios import MotionRatios
 from terrain.result.sets_against_poses import sentences, sets_against_poses
 
 RIGHT = {"y_left": 0.45, "y_right": -0.42, "x_icr": -0.05}

@@ -1,0 +1,1 @@
+"""What every page and figure is drawn with."""

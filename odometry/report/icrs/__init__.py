@@ -1,0 +1,1 @@
+"""ICRs and errors as figures."""

@@ -1,0 +1,1 @@
+"""Short windows in which every measured pose counts."""

@@ -1,0 +1,1 @@
+"""Stretches of measured positions, for runs without a measured yaw."""

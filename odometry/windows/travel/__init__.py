@@ -1,0 +1,1 @@
+"""Windows of equal wheel travel, and what a model predicts over them."""
