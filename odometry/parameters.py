@@ -89,7 +89,7 @@ def read_parameters(file: str | Path) -> ParameterSet:
     ParameterError
         Naming file, table and key: not TOML, an unknown model or key, a parameter missing or
         not a finite number, a covariance that is not symmetric and positive semi-definite; a
-        file of a newer format.
+        set of skid modes, or a file of a newer format.
 
     Examples
     --------
@@ -103,6 +103,11 @@ def read_parameters(file: str | Path) -> ParameterSet:
     check_first_line(file, FORMAT, ParameterError)
     content = read_toml(file, ParameterError)
     unknown = sorted(set(content) - {"vehicle", "terrain"})
+    if "modes" in content:
+        raise ParameterError(
+            f"{file}: a set of skid modes, made by `identify-modes`; expected parameters "
+            "([terrain.NAME]), as `identify` makes them. `modes --models` and `run --modes` take it"
+        )
     if unknown:
         raise ParameterError(f"{file}: unknown table [{unknown[0]}]; known: vehicle, terrain")
     tables = content.get("terrain", {})

@@ -186,3 +186,10 @@ def test_what_is_written_reads_back(tmp_path_factory, terrains, vehicle):
         assert again.covariance_order == table.covariance_order
         assert again.effects == table.effects
         np.testing.assert_array_equal(again.covariance, table.covariance)
+
+
+def test_a_set_of_skid_modes_is_no_parameter_set(tmp_path):
+    file = tmp_path / "modes.toml"
+    file.write_text('[modes]\nkind = "velocity"\n[mode.grass]\ndwell_s = 20\n')
+    with pytest.raises(ParameterError, match=r"set of skid modes.*\[terrain\.NAME\]"):
+        read_parameters(file)
