@@ -14,6 +14,7 @@ from odometry.modes.identify.gain_spread import gain_spread
 from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.identify.travel_power import travel_power
+from odometry.modes.identify.turn_excitation import LEAST_EXCITATION, turn_excitation
 from odometry.modes.response import (
     Record,
     Response,
@@ -60,8 +61,8 @@ def identify_velocity_modes(
     Raises
     ------
     IdentificationError
-        If a run names no terrain, less than 10 s of one are recorded, its treads never turn the
-        robot, or the runs are of several robots.
+        If a run names no terrain, less than 10 s of one are recorded, its runs go straight on or
+        turn alike all the time, or the runs are of several robots.
     RunFolderError
         If a run has no yaw rate, or is there twice, whole or in part.
 
@@ -84,7 +85,7 @@ def identify_velocity_modes(
     for run, speed in bar:
         for label, record in _records(run, speed):
             records.setdefault(label, []).append(record)
-    _check(records)
+    _check(records, shared=shared)
     names = tuple(sorted(records))
     pooled = [record for name in names for record in records[name]]
     measured_rows = (OMEGA,) if any(speed is None for speed in speeds) else (SPEED, OMEGA)
@@ -132,17 +133,21 @@ def identify_velocity_modes(
     )
 
 
-def _check(records: Mapping[str, Sequence[Record]]) -> None:
+def _check(records: Mapping[str, Sequence[Record]], *, shared: bool) -> None:
     for name, of in records.items():
         lasts_s = sum(record.lasts_s for record in of)
         if lasts_s < LEAST_S:
             raise IdentificationError(
                 f"{name}: {lasts_s:.1f} s recorded, expected {LEAST_S:g} s or more"
             )
-        turns = any(np.diff(record.table[:, 2:]).any() for record in of)
-        if len(records) > 1 and not turns:  # one alone is compared with none
+        # one alone is compared with none; of a shared model the runs of others determine the turns
+        share = 1.0 if shared or len(records) == 1 else turn_excitation(of)
+        if share < LEAST_EXCITATION:
             raise IdentificationError(
-                f"{name}: both treads always have the same speed; expected turns to both sides"
+                f"{name}: its runs go straight on, or turn alike all the time: the difference of "
+                f"the treads changes by {share:.1%} of their speed where it does not go with it, "
+                f"expected {LEAST_EXCITATION:.0%} or more. By how much the treads turn the robot "
+                "is not known: record turns of several radii to both sides, or leave them out"
             )
 
 

@@ -101,24 +101,41 @@ def test_drives_that_contradict_their_names_are_noted(make, out):
     assert "nearer to tar22 of tar" in answer.stderr
 
 
-@pytest.mark.parametrize("ratio", [1.0, 0.6, -1.0])
-def test_of_a_drive_that_turns_alike_all_the_time_no_turns_are_shown(make, tmp_path, out, ratio):
-    """Straight on, one circle, on the spot: its gain would be any number, -9 m of track say."""
+@pytest.fixture
+def mud(tmp_path):
+    """A run on mud of these treads and yaw rates."""
+
+    def write(left, right, yaw_rates):
+        stamps_s = 0.05 * np.arange(len(left))
+        columns = {"t": stamps_s, "v_left": left, "v_right": right, "gyro_z": yaw_rates}
+        settings = {"robot": {"track_width": 0.5}, "run": {"terrain": "mud"}}
+        write_run_folder(tmp_path / "mud", settings, {"odometry": columns})
+        return tmp_path / "mud"
+
+    return write
+
+
+def test_of_treads_that_hardly_turn_the_robot_no_turns_are_shown(make, mud, out):
+    """Its gain would be any number."""
     rng = np.random.default_rng(3)
-    stamps_s = 0.05 * np.arange(600)
-    right = 0.5 + rng.normal(0, 0.002, 600)
-    left = ratio * right + rng.normal(0, 0.002, 600)
-    gyro = (1 - ratio) * 0.5 + rng.normal(0, 0.005, 600)
-    tables = {"odometry": {"t": stamps_s, "v_left": left, "v_right": right, "gyro_z": gyro}}
-    settings = {"robot": {"track_width": 0.5}, "run": {"terrain": "mud"}}
-    write_run_folder(tmp_path / "mud", settings, tables)
-    answer = invoke(tmp_path / "mud", *(make(name, turn, name) for name, turn in TURNS.items()),
-                    "--out", out)  # fmt: skip
+    turn = np.repeat(rng.uniform(-0.3, 0.3, 30), 20)
+    run = mud(0.5 - turn / 2, 0.5 + turn / 2, rng.normal(0, 0.3, 600))
+    answer = invoke(run, *(make(name, turn, name) for name, turn in TURNS.items()), "--out", out)
     assert answer.exit_code == 0, answer.output
-    (mud,) = (line.split() for line in answer.stdout.splitlines() if line.split()[0] == "mud")
-    assert mud[1:5] == ["-"] * 4
+    (row,) = (line.split() for line in answer.stdout.splitlines() if line.split()[0] == "mud")
+    assert row[1:5] == ["-"] * 4
     assert "ice and tar are the most similar" in answer.stdout
-    assert "The runs of mud hardly turn, or turn alike all the time" in answer.stderr
+    assert "by how much its treads turn the robot is not known" in answer.stderr
+
+
+def test_a_drive_that_turns_alike_all_the_time_is_refused(make, mud, out):
+    right = 0.5 + np.random.default_rng(3).normal(0, 0.002, 600)
+    others = (make(name, turn, name) for name, turn in TURNS.items())
+    yaw_rates = 0.3 * right + np.random.default_rng(4).normal(0, 0.01, 600)
+    answer = invoke(mud(0.6 * right, right, yaw_rates), *others, "--out", out)
+    assert answer.exit_code == 1
+    assert "mud: its runs go straight on, or turn alike all the time" in str(answer.exception)
+    assert not out.exists()
 
 
 def test_one_mode_is_not_enough(grounds, out):

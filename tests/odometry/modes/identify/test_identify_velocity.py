@@ -146,12 +146,21 @@ def test_no_yaw_rate_is_reported_by_folder(grounds):
         identify_velocity_modes([run])
 
 
-def test_terrains_driven_straight_on_are_no_modes(grounds):
-    mud = grounds[1].odometry
-    straight = replace(mud, columns={**mud.columns, "v_right": mud["v_left"]})
-    runs = [grounds[0], replace(grounds[1], odometry=straight)]
-    with pytest.raises(IdentificationError, match="mud: both treads always have the same speed"):
+@pytest.mark.parametrize("ratio", [1.0, 0.6, -1.0])
+def test_terrains_that_turn_alike_all_the_time_are_no_modes(grounds, ratio):
+    """Straight on, one circle, one rate on the spot; by a shared model the others know."""
+    mud, rng = grounds[1].odometry, np.random.default_rng(0)
+    speeds = np.abs(mud["v_left"]) if ratio > 0 else np.full(SIZE, 0.3)
+    treads = {
+        name: of * speeds * (1 + rng.normal(0, 0.01, SIZE))
+        for name, of in (("v_left", ratio), ("v_right", 1.0))
+    }
+    alike = replace(mud, columns={**mud.columns, **treads})
+    runs = [grounds[0], replace(grounds[1], odometry=alike)]
+    with pytest.raises(IdentificationError, match="mud: its runs go straight on, or turn alike"):
         identify_velocity_modes(runs)
+    assert identify_velocity_modes([*runs, grounds[1]]).names == ("ice", "mud")
+    assert identify_velocity_modes(runs, shared=True).names == ("ice", "mud")
 
 
 def test_runs_are_of_one_robot(grounds, modes):
