@@ -18,12 +18,14 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.errors import IdentificationError
 from odometry.modes.bank_inputs import Signals
 from odometry.modes.detection import confusion
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.track import ModesConfig, ModeTrack, follow_modes, follow_signals
+from odometry.modes.velocity import VelocityModes
 from odometry.run import Run
 from odometry.table import Table
 
@@ -103,7 +105,7 @@ def judged(
     known: Sequence[Run], held: Sequence[Run], *, options: Mapping[str, bool], name: str
 ) -> tuple[ModeTrack, FloatArray]:
     """Modes identified on some runs, followed over others; how far yaw rates are off in sigmas."""
-    modes = identify_velocity_modes(known, **options)
+    modes = identified(known, options)
     if not options:
         gains = modes.steady_gains()[:, 1] * [-1, 1]
         lags = -1 / modes.A[:, 1, 1]
@@ -119,6 +121,19 @@ def judged(
     track = follow_signals(signals, mode_set)
     off = np.abs(signals.measured[:, 1] - track.means[:, 1]) / track.sigmas[:, 1]
     return track, off[np.isfinite(off)]
+
+
+def identified(known: Sequence[Run], options: Mapping[str, bool]) -> VelocityModes:
+    """Velocity modes of the terrains that are not refused: half a drive may be straight on."""
+    try:
+        return identify_velocity_modes(known, **options)
+    except IdentificationError as error:
+        refused = str(error).split(":")[0]
+        rest = [run for run in known if run.terrain != refused]
+        if len(rest) == len(known):
+            raise
+        print(f"Left out. {error}")
+        return identified(rest, options)
 
 
 def judged_by_poses(known: Sequence[Run], held: Sequence[Run]) -> list[ModeTrack]:
@@ -162,14 +177,21 @@ def within(table: Table, low_s: float, high_s: float) -> Table:
     return table.rows(slice(int(first), int(end)))
 
 
+def answered_s(track: ModeTrack, sure: float, names: Sequence[str]) -> FloatArray:
+    """Seconds (M, M + 2) by true terrain and answer, none of a terrain that was left out."""
+    left_out = [place for place, name in enumerate(names) if name not in track.names]
+    places = [place - before for before, place in enumerate(left_out)]
+    return np.insert(confusion(track, sure, names), places, 0.0, axis=1)
+
+
 def print_table(title: str, tracks: Sequence[ModeTrack]) -> None:
     """Shares of the time, and how the innovations were."""
-    names = tracks[0].names
+    names = max((track.names for track in tracks), key=len)
     print(f"\n{title}: named with {SURE:.0%} and more | most probable")
     print(" " * 10, *(f"{name[:9]:>9}" for name in (*names, *NO_MODES, "", *names)))
-    named = sum(confusion(track, SURE, names) for track in tracks)
+    named = sum(answered_s(track, SURE, names) for track in tracks)
     untested = dict.fromkeys(TESTS)
-    forced = sum(confusion(replace(track, **untested), 0.0, names) for track in tracks)
+    forced = sum(answered_s(replace(track, **untested), 0.0, names) for track in tracks)
     forced = forced[:, : len(names)]
     for name, row, other in zip(names, named, forced, strict=True):
         cells = [f"{value:9.2f}" for value in row / row.sum()]
