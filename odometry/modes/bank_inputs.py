@@ -14,6 +14,7 @@ from odometry.modes.measured_steps import (
     measured_travel,
     measured_turn,
 )
+from odometry.modes.turning_points import TurningPoints, turning_points
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.recorded.blocked_turns import blocked_spans
@@ -51,6 +52,8 @@ class Signals:
         Measured headings beside the gyroscope, where they are no measurement of the filters.
     blocked_s : (B, 2)
         Between which stamps the treads turn on the spot and the robot does not.
+    turning_points : TurningPoints or None
+        About which point the robot turns, where poses are no measurement of the filters.
     """
 
     stamps_s: FloatArray
@@ -62,6 +65,7 @@ class Signals:
     travel: MeasuredTravel | None = None
     turn: MeasuredTurn | None = None
     blocked_s: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    turning_points: TurningPoints | None = None
 
     def __len__(self) -> int:
         return len(self.stamps_s)
@@ -79,6 +83,7 @@ class Signals:
             self.travel,
             self.turn,
             self.blocked_s,
+            self.turning_points,
         )
 
     @property
@@ -115,7 +120,8 @@ def velocity_signals(run: Run) -> Signals:
     gaps_s = odometry_gaps(run).spans_s
     checks = heading_check(run), measured_travel(run), measured_turn(run)
     blocked_s = blocked_spans(stamps_s, speeds, omega, run.robot.track_width)
-    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, *checks, blocked_s)
+    of_poses = (*checks, blocked_s, turning_points(run))
+    return Signals(stamps_s, speeds, measured, row_terrains(run), gaps_s, *of_poses)
 
 
 def pose_signals(run: Run) -> Signals:

@@ -48,7 +48,12 @@ HEAD = {
 }
 FASTEST = Key("fastest_m_s", (), "above 0")
 OPTIONAL = {
-    "velocity": (FASTEST, WIDTH),
+    "velocity": (
+        FASTEST,
+        WIDTH,
+        Key("turning_point_m", ()),
+        Key("turning_point_spread_m", (), "0 or more"),
+    ),
     "traction": (FASTEST, Key("gain_power", (), "0 or more")),
 }
 MODE = {

@@ -8,70 +8,21 @@ drifts in one direction of the world, as on a slope, by the time or by how far t
 turn, is fitted as well: over a whole turn it is no centre.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.geometry import se2
-from odometry.geometry.angles import wrap
 from odometry.modes.measured_steps import StepWindows, during
+from odometry.modes.pose_steps import AHEAD, ASIDE, TURN, PoseSteps
 from odometry.modes.response import lagged
 from odometry.modes.traction import TURNS, twists_of
-from odometry.windows.recorded.spans import touched
 
-STEP_S, LONGEST_S = 0.5, 1.05  # from a pose to the one it is compared with
 LATE_S = np.arange(-1, 9) * 0.1  # of poses, of speed and of turn against the treads
 # Prior deviations of a drift, of one by the turn, and of the error of a step. Chosen in development
 # (tests/studies/modes.md): without the second slopes lose 1.5 points of right names instead of 0.7.
 DRIFT_M_S, SLIDE_M, STEP_M = 0.03, 0.02, 0.02
 TURNING_RAD_S, TURNING_S = 0.05, 2.0  # in a window: less is no turn
 FREE_M = 1e3  # of a centre: any
-AHEAD, ASIDE, TURN = 0, 1, 2
 UNKNOWNS = 6  # of a window: centre to the left and ahead, both drifts in x and y
-
-
-@dataclass(frozen=True)
-class PoseSteps:
-    """K steps that overlap, each from a measured pose to one STEP_S later or a little more.
-
-    `moved` (K, 3) is ahead, to the left [m] and turn [rad]: the constant twist of a step times its
-    duration; `heading_rad` (K,) is that in the middle.
-    """
-
-    begin_s: FloatArray
-    end_s: FloatArray
-    moved: FloatArray
-    heading_rad: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.begin_s)
-
-    @property
-    def lasts_s(self) -> FloatArray:
-        """Duration (K,) of each."""
-        return self.end_s - self.begin_s
-
-    @property
-    def overlapping(self) -> float:
-        """How many steps hold one moment."""
-        return max(float(np.median(self.lasts_s) / np.median(np.diff(self.begin_s))), 1.0)
-
-
-def pose_steps(stamps_s: FloatArray, poses: FloatArray, gaps_s: FloatArray) -> PoseSteps:
-    """Steps of poses (N, 3), NaN where none was measured; none touches a gap (G, 2)."""
-    known = np.isfinite(poses).all(axis=1)
-    stamps_s, poses = stamps_s[known], poses[known]
-    last = np.searchsorted(stamps_s, stamps_s + STEP_S - 1e-6)
-    first = np.flatnonzero(last < len(stamps_s))
-    last = last[first]
-    begin_s, end_s = stamps_s[first], stamps_s[last]
-    kept = (end_s - begin_s <= LONGEST_S) & ~touched(gaps_s, begin_s, end_s)
-    first, last = first[kept], last[kept]
-    moved = np.asarray(se2.between(poses[first], poses[last]))
-    moved[:, TURN] = wrap(moved[:, TURN])
-    heading = poses[first, 2] + moved[:, TURN] / 2
-    return PoseSteps(stamps_s[first], stamps_s[last], se2.log(moved), heading)
 
 
 def predicted_steps(

@@ -15,6 +15,7 @@ from odometry.modes.checks.pose_scatter import pose_scatter
 from odometry.modes.checks.travel_check import travel_check
 from odometry.modes.checks.turn_agreement import turns_disagree
 from odometry.modes.checks.turn_gain_check import turn_gain_check
+from odometry.modes.checks.turning_point_check import turning_point_check
 from odometry.modes.innovation_test import (
     LONG_CLIP,
     LONG_WINDOW_S,
@@ -44,10 +45,10 @@ def contradictions(
 
     `bias` is that of the filters (N,) and its standard deviation (N,).
 
-    Of modes that measure velocities: equal modes, turns, travel, turns between two modes and
-    headings at odds. Of those that measure poses: turns between two modes, gains and turning
-    centres that are off, drifts of places, where one was contradicted not long ago, and how far
-    poses scatter.
+    Of modes that measure velocities: equal modes, turns, travel, turns between two modes, headings
+    at odds and the point about which the robot turns. Of those that measure poses: turns between
+    two modes, gains and turning centres that are off, drifts of places, where one was contradicted
+    not long ago, and how far poses scatter.
     """
     modes, biases_rad_s = mode_set.modes, bias[0]
     believed = biases_rad_s, left.independent, config
@@ -71,6 +72,7 @@ def contradictions(
         "travel": travel_check(signals, modes, config),
         "between": between_modes(signals, modes, *believed),
         "headings_disagree": turns_disagree(signals, modes, left.leading, bias, config),
+        "centre": turning_point_check(signals, modes, config),
     }
 
 

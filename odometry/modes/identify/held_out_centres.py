@@ -10,17 +10,13 @@ from odometry.arrays import FloatArray
 from odometry.modes.bank_inputs import pose_signals
 from odometry.modes.identify.held_out_gains import LEAST_WINDOWS, USUAL
 from odometry.modes.measured_steps import LEAST_STEPS, StepWindows, step_windows
+from odometry.modes.pose_steps import AHEAD, ASIDE, TURN, PoseSteps, pose_steps
 from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, TractionModes, twists_of
 from odometry.modes.turning_centres import (
-    AHEAD,
-    ASIDE,
     LATE_S,
     STEP_M,
-    TURN,
-    PoseSteps,
     centres,
     mean_centre_m,
-    pose_steps,
     predicted_steps,
 )
 from odometry.run import Run

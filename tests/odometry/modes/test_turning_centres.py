@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.modes.measured_steps import step_windows
+from odometry.modes.pose_steps import pose_steps
 from odometry.modes.traction import twists_of
-from odometry.modes.turning_centres import centres, mean_centre_m, pose_steps, predicted_steps
+from odometry.modes.turning_centres import centres, mean_centre_m, predicted_steps
 from tests.odometry.modes.checks.centre_examples import WIDTH, centre_run, centre_set
 
 

@@ -161,7 +161,10 @@ def test_what_no_pose_can_check_is_said(make, models, tmp_path):
     assert "Not checked: the scale of the gyroscope" not in with_poses.stdout
     assert "Not checked: the scale of the gyroscope, without measured headings" in without.stdout
     assert "Not checked: the distance, without measured positions" in without.stdout
-    assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 3
+    point = "Not checked: about which point the robot turns, without measured yaw: a load"
+    assert point in without.stdout
+    assert point not in with_poses.stdout
+    assert len(json.loads((tmp_path / "two" / "result.json").read_text())["not_checked"]) == 4
 
 
 def test_positions_that_determine_no_yaw_leave_the_answers_to_the_gyroscope(make, models, tmp_path):
