@@ -8,6 +8,9 @@ import pytest
 from odometry.modes.bank_inputs import velocity_signals
 from odometry.modes.checks.turning_point_check import HOLDS_S, turning_point_check
 from odometry.modes.identify.turning_point import turning_point
+from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.mode_set_file import read_mode_set, write_mode_set
+from odometry.modes.track import follow_modes
 from odometry.modes.turning_points import WINDOW_S, turning_points
 from odometry.modes.velocity import VelocityModes
 from odometry.windows.recorded.measured_poses import YAW_FOUND
@@ -91,3 +94,14 @@ def test_the_runs_of_identification_give_mean_and_spread():
     assert mean == pytest.approx(0.1, abs=0.02)
     assert spread == pytest.approx(0.05, abs=0.02)
     assert np.isnan(turning_point([replace(same[0], pose=None)])).all()
+
+
+def test_velocity_modes_are_followed_with_it_also_from_a_file(tmp_path):
+    run, file = drive(4, -0.15), tmp_path / "set.toml"
+    write_mode_set(file, ModeSet(modes(), np.array([DWELL_S])))
+    read = read_mode_set(file)
+    assert (read.modes.turning_point_m, read.modes.turning_point_spread_m) == (0.1, 0.02)
+    track = follow_modes(run, read)
+    np.testing.assert_array_equal(track.centre, track.stamps_s >= WINDOW_S)
+    write_mode_set(file, ModeSet(modes(np.nan, np.nan), np.array([DWELL_S])))
+    assert follow_modes(run, read_mode_set(file)).centre is None
