@@ -13,7 +13,7 @@ from odometry.modes.response import Record, block_means
 
 BLOCK_S = 1.0  # of means: noise of the treads is no turn
 # As a share of the tread speeds. Made drives straight on or on one circle have 0.001 to 0.008,
-# each of 21 recorded drives 0.16 to 1.05, drives of 30 made robots 0.15 or more.
+# each of 22 recorded drives 0.16 to 1.05, drives of 30 made robots 0.15 or more.
 LEAST_EXCITATION = 0.04
 
 
