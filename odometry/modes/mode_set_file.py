@@ -51,8 +51,8 @@ OPTIONAL = {
     "velocity": (
         FASTEST,
         WIDTH,
-        Key("turning_point_m", ()),
-        Key("turning_point_spread_m", (), "0 or more"),
+        Key("turning_least_m", ()),
+        Key("turning_most_m", ()),
     ),
     "traction": (FASTEST, Key("gain_power", (), "0 or more")),
 }

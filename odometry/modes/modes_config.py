@@ -63,7 +63,9 @@ class ModesConfig:
         By which places drift in one direction of the world: with 3 clean runs lose 0.1 points more,
         and with 3.5 wrong names on slopes stay for 0.1 % of the time more (development).
     point_sigmas : float
-        By which the robot may turn about another point than in the runs of velocity modes.
+        By which the robot may turn about another point than in the runs of velocity modes: with 3 a
+        load shows in 55 % of its windows instead of 71, and of clean drives 0.0 % instead of 0.1
+        are taken for one (development).
     alike_sigmas : float
         Of what lasts of the errors of modes; below it two modes are taken for equal.
     bias_sigmas : float
@@ -89,7 +91,7 @@ class ModesConfig:
     gain_sigmas: float = 2.25
     centre_sigmas: float = 2.5
     drift_sigmas: float = 3.25
-    point_sigmas: float = 3.0
+    point_sigmas: float = 2.0
     alike_sigmas: float = 2.0
     bias_sigmas: float = 3.0
 

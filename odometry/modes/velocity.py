@@ -57,10 +57,10 @@ class VelocityModes:
         0.36.
     track_width : float
         Of the robot [m]; NaN of sets of versions before 0.48.
-    turning_point_m, turning_point_spread_m : float
+    turning_least_m, turning_most_m : float
         How far ahead of its origin the robot turned in the runs identified from, on all terrains,
-        and by how much that differs from turn to turn; NaN without measured poses with yaw, and of
-        sets of versions before 0.52.
+        at least and at most; NaN without measured poses with yaw, and of sets of versions before
+        0.52.
     """
 
     names: tuple[str, ...]
@@ -75,8 +75,8 @@ class VelocityModes:
     turn_spread: FloatArray | None = None
     turn_power: FloatArray | None = None
     track_width: float = np.nan
-    turning_point_m: float = np.nan
-    turning_point_spread_m: float = np.nan
+    turning_least_m: float = np.nan
+    turning_most_m: float = np.nan
 
     kind = "velocity"
     state_angles: tuple[int, ...] = ()

@@ -1,4 +1,4 @@
-"""Whether the robot turns about the point that it turned about when its modes were identified.
+"""Whether the robot turns about a point that it turned about when its modes were identified.
 
 A load that shifts is another terrain in the yaw rate for given treads: by both the robot turns more
 or less. It also moves the point about which the robot turns, farther than terrains do.
@@ -20,15 +20,15 @@ def turning_point_check(
 ) -> BoolArray | None:
     """Where (N,) the robot turns about another point, by windows of 16 s; None without poses.
 
-    None of a set that does not state the point either.
+    None of a set that does not state the points either.
     """
     config, points = config or ModesConfig(), signals.turning_points
-    known = np.isfinite([modes.turning_point_m, modes.turning_point_spread_m]).all()
-    if points is None or not len(points.ends_s) or not known:
+    if points is None or not len(points.ends_s) or not np.isfinite(modes.turning_most_m):
         return None
-    sigma_m = np.hypot(points.sigma_m, modes.turning_point_spread_m)
-    bound_m = config.point_sigmas * sigma_m + TOLERANCE * modes.track_width
-    off = np.abs(points.ahead_m - modes.turning_point_m) > bound_m
+    bound_m = config.point_sigmas * points.sigma_m + TOLERANCE * modes.track_width
+    ahead_m = points.ahead_m
+    off = ahead_m > modes.turning_most_m + bound_m
+    off |= ahead_m < modes.turning_least_m - bound_m
     last = np.searchsorted(points.ends_s, signals.stamps_s, side="right") - 1
     holds = (last >= 0) & (signals.stamps_s - points.ends_s[last] <= HOLDS_S)
     return np.asarray(holds & off[last])

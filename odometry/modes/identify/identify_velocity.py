@@ -15,7 +15,7 @@ from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.identify.travel_power import travel_power
 from odometry.modes.identify.turn_excitation import LEAST_EXCITATION, turn_excitation
-from odometry.modes.identify.turning_point import turning_point
+from odometry.modes.identify.turning_range import turning_range
 from odometry.modes.response import (
     Record,
     Response,
@@ -131,7 +131,7 @@ def identify_velocity_modes(
         turn_spread,
         turn_power,
         track_width,
-        *turning_point(runs),
+        *turning_range(runs),
     )
 
 

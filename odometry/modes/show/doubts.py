@@ -194,7 +194,7 @@ def not_checked(followed: Followed) -> tuple[str, ...]:
         found.append(
             f"the distance, without {missing}: a load on both tyres turns as another terrain does"
         )
-    if signals.turning_points is None or not np.isfinite(modes.turning_point_m):
+    if signals.turning_points is None or not np.isfinite(modes.turning_most_m):
         where = "" if signals.turning_points is None else " in the runs of the set"
         found.append(
             f"about which point the robot turns, without measured yaw{where}: a load that shifts "

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.modes.bank_inputs import velocity_signals
 from odometry.modes.checks.turning_point_check import HOLDS_S, turning_point_check
-from odometry.modes.identify.turning_point import turning_point
+from odometry.modes.identify.turning_range import turning_range
 from odometry.modes.mode_set import DWELL_S, ModeSet
 from odometry.modes.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.track import follow_modes
@@ -36,11 +36,11 @@ def drive(seed, ahead_m, *, turns_until_s=LASTS_S, drift_m_s=(0.0, 0.0), **colum
     return run_of_tables({"t": stamps_s} | treads, pose=poses)
 
 
-def modes(point_m=0.1, spread_m=0.02):
+def modes(least_m=0.08, most_m=0.12):
     noise = np.full((1, 2), 1e-4)
     A, B = -5.0 * np.eye(2)[None], np.array([[[2.5, 2.5], [-5.0, 5.0]]])
-    point = {"turning_point_m": point_m, "turning_point_spread_m": spread_m}
-    return VelocityModes(("tar",), A, B, noise, noise, track_width=ROBOT.track_width, **point)
+    points = {"turning_least_m": least_m, "turning_most_m": most_m}
+    return VelocityModes(("tar",), A, B, noise, noise, track_width=ROBOT.track_width, **points)
 
 
 @pytest.mark.parametrize("drift_m_s", [(0.0, 0.0), (0.03, -0.02)])
@@ -66,7 +66,7 @@ def test_a_load_that_shifts_is_refused_after_a_window_and_straights_keep_that():
 def test_without_what_it_needs_there_is_no_test():
     run = drive(2, 0.1)
     signals = velocity_signals(run)
-    assert turning_point_check(signals, modes(spread_m=np.nan)) is None
+    assert turning_point_check(signals, modes(np.nan, np.nan)) is None
     assert turning_point_check(replace(signals, turning_points=None), modes()) is None
     assert turning_points(replace(run, pose=None)) is None
     assert turning_points(drive(2, 0.1, **{YAW_FOUND: np.full(600, 0.01)})) is None
@@ -84,23 +84,20 @@ def test_a_new_chain_of_poses_begins_another_step():
     assert chained.sigma_m.max() < 0.05 < torn.sigma_m.max()
 
 
-def test_the_runs_of_identification_give_mean_and_spread():
+def test_the_runs_of_identification_give_the_range_of_points():
     same = [drive(seed, 0.1) for seed in range(4)]
-    mean, spread = turning_point(same)
-    assert mean == pytest.approx(0.1, abs=0.01)
-    assert spread < 0.01
-    apart = [drive(seed, 0.1 + 0.05 * (-1) ** seed) for seed in range(8)]
-    mean, spread = turning_point(apart)
-    assert mean == pytest.approx(0.1, abs=0.02)
-    assert spread == pytest.approx(0.05, abs=0.02)
-    assert np.isnan(turning_point([replace(same[0], pose=None)])).all()
+    assert turning_range(same) == pytest.approx((0.1, 0.1), abs=0.02)
+    apart = [*same, drive(4, 0.0), drive(5, 0.15)]
+    assert turning_range(apart) == pytest.approx((0.0, 0.15), abs=0.02)
+    assert np.isnan(turning_range([replace(same[0], pose=None)])).all()
+    assert np.isnan(turning_range(same[:1])).all()
 
 
 def test_velocity_modes_are_followed_with_it_also_from_a_file(tmp_path):
     run, file = drive(4, -0.15), tmp_path / "set.toml"
     write_mode_set(file, ModeSet(modes(), np.array([DWELL_S])))
     read = read_mode_set(file)
-    assert (read.modes.turning_point_m, read.modes.turning_point_spread_m) == (0.1, 0.02)
+    assert (read.modes.turning_least_m, read.modes.turning_most_m) == (0.08, 0.12)
     track = follow_modes(run, read)
     np.testing.assert_array_equal(track.centre, track.stamps_s >= WINDOW_S)
     write_mode_set(file, ModeSet(modes(np.nan, np.nan), np.array([DWELL_S])))
