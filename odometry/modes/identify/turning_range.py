@@ -17,9 +17,10 @@ def turning_range(runs: Sequence[Run]) -> tuple[float, float]:
     move the point by chance to one side, so that a spread about a mean does not hold it.
     """
     found = [of for of in map(turning_points, runs) if of is not None]
-    ahead_m, sigma_m = np.hstack([[of.ahead_m, of.sigma_m] for of in found] or [np.empty((2, 0))])
-    if len(ahead_m) < LEAST_WINDOWS:
+    if sum(len(of.ends_s) for of in found) < LEAST_WINDOWS:
         return np.nan, np.nan
+    ahead_m = np.concatenate([of.ahead_m for of in found])
+    sigma_m = np.concatenate([of.sigma_m for of in found])
     usual_m = float(np.median(ahead_m))
     least_m, most_m = float((ahead_m + sigma_m).min()), float((ahead_m - sigma_m).max())
     return min(least_m, usual_m), max(most_m, usual_m)
