@@ -143,8 +143,6 @@ class GapConfig(SmoothConfig):
         Chi-squared a degree of freedom that quick forms must leave before slow ones are fitted.
     gyro_least_of_yaw : float
         Least noise of the gyroscope's turn over a second, as a share of that of a measured yaw.
-    gyro_bias_drift_rad_s : float
-        By how much the bias of a gyroscope differs from one recording to another.
     beside : int
         Names that are tested beside a smooth function: those of most evidence without it.
     least_odds, sure_odds : float
@@ -224,7 +222,6 @@ class GapConfig(SmoothConfig):
     brought_back: float = 0.25
     contact_spread: float = 1.1
     gyro_least_of_yaw: float = 1.0
-    gyro_bias_drift_rad_s: float = 0.01
     beside: int = 3
     least_odds: float = 0.6
     sure_odds: float = 0.98

@@ -26,8 +26,6 @@ class Base:
         By how much poses always follow the recorded speeds late.
     gyro_latency_s : float
         By how much the gyroscope does.
-    gyro_bias_rad_s : float
-        What the gyroscope reports at rest.
     """
 
     model: KinematicModel
@@ -35,7 +33,6 @@ class Base:
     robot: Robot
     latency_s: float = 0.0
     gyro_latency_s: float = 0.0
-    gyro_bias_rad_s: float = 0.0
 
     def on(self, terrain: str) -> "Base":
         """The same as it is on one terrain, where its model has several."""

@@ -172,7 +172,7 @@ def as_driven(true: Rivalling, scene: DenseWindows) -> DenseWindows:
     inputs = scene.inputs
     if inputs.yaw_rate_rad_s is not None:
         omega = corrected_twist(true.base, true.effects, inputs)[:, 2]
-        rates = reported_yaw_rate(true.effects, omega, inputs) + true.base.gyro_bias_rad_s
+        rates = reported_yaw_rate(true.effects, omega, inputs)
         inputs = replace(inputs, yaw_rate_rad_s=rates)
     return replace(scene, poses=poses, inputs=inputs)
 

@@ -99,7 +99,6 @@ def calibrated(
     noise, gyro_expected = _doubted(noise, config)
     whiteners = [whitening(scene, noise) for scene in scenes]
     uncertain, information = _fit(uncertain, scenes, whiteners)
-    information = _with_drift(uncertain, information, config)
     held_back = _held_back(uncertain, scenes, whiteners, config)
     if given is None:
         return Calibration(uncertain, information, noise, held_back, gyro_expected)
@@ -107,7 +106,6 @@ def calibrated(
     believed, information = _fit(
         Uncertain(base, np.zeros_like(free), True, gyroscope), scenes, whiteners
     )
-    information = _with_drift(believed, information, config)
     return Calibration(believed, information, noise, held_back, gyro_expected)
 
 
@@ -121,17 +119,6 @@ def _doubted(noise: Noise, config: GapConfig) -> tuple[Noise, float]:
     least = config.gyro_least_of_yaw * noise.yaw_rad
     doubted = replace(noise, gyro_rad=max(noise.gyro_rad, least))
     return doubted, (noise.gyro_rad / doubted.gyro_rad) ** 2
-
-
-def _with_drift(uncertain: Uncertain, information: FloatArray, config: GapConfig) -> FloatArray:
-    """Information (F, F) on another day, when the gyroscope has another bias."""
-    if not uncertain.has_gyroscope:
-        return information
-    own = information[-1, -1]
-    row = information[:, -1]
-    # Adding a variance to one number: Sherman and Morrison, on the information.
-    drift = config.gyro_bias_drift_rad_s**2
-    return np.asarray(information - np.outer(row, row) * drift / (1 + drift * own))
 
 
 def _held_back(

@@ -85,8 +85,7 @@ def _by_sensors(here: Responses, model: Model, other: Model, scene: DenseWindows
     (base, _), (changed, _) = model, other
     of_poses = 3 * (scene.windows.shape[1] - 1)
     change = np.zeros((len(scene), scene.rows_per_window))
-    own, its = ((one.gyro_latency_s, one.gyro_bias_rad_s) for one in (base, changed))
-    if own == its:
+    if changed.gyro_latency_s == base.gyro_latency_s:
         change[:, :of_poses] = rows_of_poses(here.path, *other, scene) - here.rows_of_poses
     if changed.latency_s == base.latency_s:
         rows = rows_of_gyroscope(here.chain.twist, *other, scene)

@@ -87,7 +87,8 @@ class Responses:
         self._off_first(self._seen.of(moved), rows[..., : 3 * steps])
         if self._scene.reported_turns is not None:
             reported = self._delayed.of(_sum(omega * self._by_rate, np.empty_like(omega)))
-            np.subtract(reported[..., :-1], reported[..., 1:], out=rows[..., 3 * steps :])
+            turned = reported[..., :-1] - reported[..., 1:]
+            rows[..., 3 * steps :] = self._scene.less_bias(turned)
 
     def _off_first(self, moved: FloatArray, rows: FloatArray) -> None:
         """Change of residuals into rows (C, K, 3 n), of changes (3, C, K, n + 1) of all poses."""

@@ -106,11 +106,14 @@ def rows_of_poses(
 def rows_of_gyroscope(
     twists: FloatArray, base: Base, effects: Sequence[Added], scene: DenseWindows
 ) -> FloatArray:
-    """Residuals (K, n) of the turns of each window under twists (N, 3); (K, 0) without them."""
+    """Residuals (K, n) of the turns of each window under twists (N, 3); (K, 0) without them.
+
+    Less what is the same at all times of the run: a gyroscope has another bias after each start.
+    """
     if scene.reported_turns is None:
         return np.empty((len(scene), 0))
-    rates = reported_yaw_rate(effects, twists[:, 2], scene.inputs) + base.gyro_bias_rad_s
-    return scene.reported_turns - scene.turns_of(rates, base.gyro_latency_s)
+    rates = reported_yaw_rate(effects, twists[:, 2], scene.inputs)
+    return scene.less_bias(scene.reported_turns - scene.turns_of(rates, base.gyro_latency_s))
 
 
 def whitened_residuals(

@@ -17,8 +17,7 @@ from odometry.run import Run
 from odometry.set_of_robot import other_width
 
 LONGEST_LATENCY_S = 1.0
-LARGEST_BIAS_RAD_S = 0.5
-PARAMETER_SCALE, LATENCY_SCALE_S, BIAS_SCALE_RAD_S = 0.01, 0.02, 1e-3
+PARAMETER_SCALE, LATENCY_SCALE_S = 0.01, 0.02
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class Uncertain:
         Of the model's parameters.
     latency_is_free : bool
     has_gyroscope : bool
-        Whether a gyroscope was recorded, whose own latency and bias are free then.
+        Whether a gyroscope was recorded, whose own latency is free then.
     """
 
     base: Base
@@ -47,9 +46,9 @@ class Uncertain:
 
     @cached_property
     def values(self) -> FloatArray:
-        """The free numbers (F,): parameters, the latency, then those of the gyroscope."""
+        """The free numbers (F,): parameters, the latency, then that of the gyroscope."""
         latency = [self.base.latency_s] if self.latency_is_free else []
-        own = [self.base.gyro_latency_s, self.base.gyro_bias_rad_s] if self.has_gyroscope else []
+        own = [self.base.gyro_latency_s] if self.has_gyroscope else []
         return np.concatenate([self.base.values[self.free], latency, own])
 
     @property
@@ -59,7 +58,7 @@ class Uncertain:
         return (
             *(parameter.name for parameter, free in parameters if free),
             *(("latency",) if self.latency_is_free else ()),
-            *(("gyro_latency", "gyro_bias") if self.has_gyroscope else ()),
+            *(("gyro_latency",) if self.has_gyroscope else ()),
         )
 
     def at(self, values: FloatArray) -> Base:
@@ -68,9 +67,8 @@ class Uncertain:
         parameters = base.values.copy()
         parameters[self._places] = values[:count]
         latency_s = float(values[count]) if self.latency_is_free else base.latency_s
-        own = (base.gyro_latency_s, base.gyro_bias_rad_s)
-        own = values[-2:].tolist() if self.has_gyroscope else own
-        return Base(base.model, parameters, base.robot, latency_s, *own)
+        own_s = float(values[-1]) if self.has_gyroscope else base.gyro_latency_s
+        return Base(base.model, parameters, base.robot, latency_s, own_s)
 
     @cached_property
     def _places(self) -> IntArray:
@@ -83,7 +81,7 @@ class Uncertain:
         late = (-LONGEST_LATENCY_S, LONGEST_LATENCY_S)
         ends = [s for s, free in zip(searched, self.free, strict=True) if free]
         ends += [late] if self.latency_is_free else []
-        ends += [late, (-LARGEST_BIAS_RAD_S, LARGEST_BIAS_RAD_S)] if self.has_gyroscope else []
+        ends += [late] if self.has_gyroscope else []
         low, high = np.array(ends, dtype=np.float64).reshape(-1, 2).T
         return np.asarray(low), np.asarray(high)
 
@@ -91,7 +89,7 @@ class Uncertain:
     def scales(self) -> FloatArray:
         """Small changes (F,) that matter."""
         latency = [LATENCY_SCALE_S] if self.latency_is_free else []
-        own = [LATENCY_SCALE_S, BIAS_SCALE_RAD_S] if self.has_gyroscope else []
+        own = [LATENCY_SCALE_S] if self.has_gyroscope else []
         return np.concatenate([np.full(int(self.free.sum()), PARAMETER_SCALE), latency, own])
 
 

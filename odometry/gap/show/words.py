@@ -149,7 +149,7 @@ def moves_of(calibration: Calibration, base: Base) -> tuple[Moved, ...]:
     sigmas = np.sqrt(np.diag(np.linalg.inv(information)))
     after = replace(uncertain, base=base).values
     units = {parameter.name: parameter.unit for parameter in base.model.parameters}
-    units |= {"latency": "s", "gyro_latency": "s", "gyro_bias": "rad/s"}
+    units |= {"latency": "s", "gyro_latency": "s"}
     return tuple(
         Moved(name, units[name], *map(float, numbers))
         for name, *numbers in zip(uncertain.names, values, after, sigmas, strict=True)

@@ -104,6 +104,12 @@ class DenseWindows:
         at_poses = np.interp(self.pose_s - late_s, self.time_s, turned)
         return np.asarray(np.diff(at_poses[self.windows], axis=1))
 
+    def less_bias(self, turns: FloatArray) -> FloatArray:
+        """Turns (..., K, n) between poses of each window less their mean rate over all windows."""
+        lasts_s = np.diff(self.pose_s[self.windows], axis=1)
+        rates_rad_s = turns.sum(axis=(-2, -1), keepdims=True) / lasts_s.sum()
+        return np.asarray(turns - rates_rad_s * lasts_s)
+
     def without_gyroscope(self) -> "DenseWindows":
         """The same as if no yaw rate had been recorded."""
         return replace(self, inputs=replace(self.inputs, yaw_rate_rad_s=None))

@@ -39,7 +39,7 @@ HYPOTHESES = {
 @pytest.fixture(scope="module")
 def uncertain(known):
     free = np.array([True, True, True, True, False])
-    base = replace(known.base, latency_s=0.03, gyro_latency_s=0.02, gyro_bias_rad_s=0.01)
+    base = replace(known.base, latency_s=0.03, gyro_latency_s=0.02)
     base = Uncertain(base, free, latency_is_free=True, has_gyroscope=True)
     count = len(base.values)
     information = np.diag(np.linspace(10.0, 20.0, count))
