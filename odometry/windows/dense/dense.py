@@ -13,7 +13,7 @@ from odometry.models.inputs import Inputs
 from odometry.run import Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
-from odometry.windows.dense.dense_spans import LEAST_POSES, windows_of_poses
+from odometry.windows.dense.dense_spans import EDGE_S, LEAST_POSES, windows_of_poses
 from odometry.windows.recorded.between import between
 from odometry.windows.recorded.record import record_of, words
 
@@ -162,7 +162,7 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
         reasons = words(left_out)
         raise WindowError(
             f"{run.folder}: no window of {horizon_s:g} s with {LEAST_POSES} measured poses "
-            f"without a gap; {reasons + '; ' if reasons else ''}choose a longer horizon"
+            f"without a gap; {reasons + '; ' if reasons else ''}{_advice(pose_s, horizon_s)}"
         )
     inputs = replace(record.inputs, time_s=time_s, terrain=row_terrains(run)[rows])
     return DenseWindows(
@@ -175,6 +175,14 @@ def dense_windows_of(run: Run, horizon_s: float) -> DenseWindows:
         windows,
         left_out,
     )
+
+
+def _advice(pose_s: FloatArray, horizon_s: float) -> str:
+    """What to do where poses (M,) have no window: rare ones need longer windows, short runs not."""
+    lasts_s = float(np.ptp(pose_s)) if len(pose_s) else 0.0
+    if lasts_s < horizon_s + 2 * EDGE_S:
+        return f"its poses last {lasts_s:.3g} s: record for longer"
+    return "choose a longer horizon"
 
 
 def covered_s(run: Run, horizons_s: Sequence[float]) -> FloatArray:

@@ -114,7 +114,8 @@ def test_samples_are_in_force_until_the_next(run):
 
 
 def test_a_run_shorter_than_a_window_is_refused(run):
-    with pytest.raises(WindowError, match=r"no window of 2 s with 3 .*longer horizon"):
+    """A longer window fits into it even less."""
+    with pytest.raises(WindowError, match=r"no window of 2 s with 3 .*: record for longer"):
         dense_windows_of(with_poses(run, run.pose.stamps_s < 2.2), 2.0)
 
 
