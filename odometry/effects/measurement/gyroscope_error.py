@@ -54,9 +54,9 @@ class GyroscopeBySpeedError(GyroscopeError):
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         return (
-            EffectParameter("linear", "rad/m", -0.5, 0.5, 0.0, 0.005),
-            EffectParameter("square", "rad s/m^2", -0.5, 0.5, 0.0, 0.005),
-            EffectParameter("turning", "rad s/m^2", -0.5, 0.5, 0.0, 0.005),
+            EffectParameter("linear", "rad/m", -5.0, 5.0, 0.0, 0.005),
+            EffectParameter("square", "rad s/m^2", -5.0, 5.0, 0.0, 0.005),
+            EffectParameter("turning", "rad s/m^2", -5.0, 5.0, 0.0, 0.005),
         )
 
     def gyroscope(

@@ -162,9 +162,9 @@ def smooth_in_place(
     """The smooth function that takes the place of one name with more evidence.
 
     None where no function beats the name by the margin, or where the name still closes its share
-    beside the best: then the function describes something else. Nor where the name is one of
-    contact forces, whose equations are right and imperfect, and the function closes less than it
-    on held-out data.
+    beside the best: then the function describes something else. Nor where the function closes less
+    than the name on held-out data, and the name is one of contact forces, whose equations are right
+    and imperfect, or leaves nothing but noise.
     """
     fitter, config = search.fitter, search.config
     others = [*names.effects[:place], *names.effects[place + 1 :]]
@@ -185,7 +185,8 @@ def smooth_in_place(
     margin = margin_of(config, fitter.spread(fits[best]), closed)
     if surely_dearer(names, fits[best], fitter.measured) < margin:
         return None
-    if names.effects[place].effect.slow and closes_less(search, fits[best], names):
+    may_lose = names.effects[place].effect.slow or fitter.spread(names) <= config.unexplained
+    if may_lose and closes_less(search, fits[best], names):
         return None
     is_main_part = is_most_of(closed, cost_of(before) - cost, config)
     if is_main_part and is_part_of(fitter, names, place, fits[best]):

@@ -24,6 +24,13 @@ def test_a_gyroscope_shakes_with_the_speed_and_with_the_turn():
     assert GyroscopeBySpeedError().lacks(inputs, None) == "a gyroscope"
 
 
+def test_what_shakes_the_gyroscope_of_a_slow_robot_is_searched():
+    """0.25 rad/s at a top speed of 0.6 m/s."""
+    linear, square, _ = GyroscopeBySpeedError().parameters
+    assert linear.low < -0.25 / 0.6 < 0.25 / 0.6 < linear.high
+    assert square.low < -0.25 / 0.6**2 < 0.25 / 0.6**2 < square.high
+
+
 @pytest.mark.parametrize("bent", [(0.1, 0.0), (0.0, -0.3), (0.6, 0.6)])
 def test_a_compass_is_bent_by_one_wave_a_turn_and_back(rng, bent):
     poses = rng.uniform(-9, 9, (30, 3))
