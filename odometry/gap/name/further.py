@@ -7,12 +7,15 @@ evaluated by a fit to the others.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import FloatArray
+from odometry.effects.interface.base import Effect
 from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added
+from odometry.effects.measurement.late_by_chance import LateByChance
 from odometry.effects.unknown.leaning import LEANING
 from odometry.effects.unknown.residual import TREADS, Residual
 from odometry.effects.unknown.residual_variables import FURTHER, OF_TREADS, REPEATED, variable_of
@@ -23,12 +26,14 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.general import every, knots_of
 from odometry.gap.name.places import finer_maps
 from odometry.gap.name.unnamed import grown_of, with_course
-from odometry.gap.name.verdict import raises_measured, within_noise
+from odometry.gap.name.verdict import MAY_BE_CHANCE, raises_measured, within_noise
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.simulate import whitened_residuals
 from odometry.gap.prepare.statistic import sure_sum
 from odometry.windows.dense.dense import DenseWindows
 from odometry.windows.dense.dense_noise import whitening
+
+FEW = 4  # stretches held out
 
 
 @dataclass
@@ -77,18 +82,34 @@ class Further(Standing):
         return [self._standing(with_course(self, held), ())]
 
     def _fails(self, found: Explanation) -> str:
+        """See `Standing`; names that last, and what is unknown, by the stretches measured as well.
+
+        Of four stretches held out or fewer hardly any gain is sure. Names must close more.
+        """
         reason = super()._fails(found)
-        if reason and not found.has_name and self._is_sure_with_measured(found):
+        if (
+            reason
+            and not found.has_name
+            and self._is_sure_with_measured(found, self.config.least_of_rest)
+        ):
             self.sure_with_measured.append(found)
+        by_few = reason.endswith(MAY_BE_CHANCE) and self._is_held_out_by_few
+        if by_few and all(map(_lasts, found.effects)):
+            most = self.config.mostly_closed
+            return "" if self._is_sure_with_measured(found, most) else reason
         return reason
 
-    def _is_sure_with_measured(self, found: Explanation) -> bool:
-        """Whether it closes half of the gap held out, and some of all stretches together, surely.
+    @cached_property
+    def _is_held_out_by_few(self) -> bool:
+        return len(np.unique(numbered_pieces(self.held_out, self.config.part_s))) <= FEW
+
+    def _is_sure_with_measured(self, found: Explanation, share: float) -> bool:
+        """Whether it closes a share of the gap held out, and some of all stretches, surely.
 
         Gains are of chi-squared: of measured stretches by fits to the others.
         """
         if (
-            self._held_out_left(found)[1] < self.config.least_of_rest
+            self._held_out_left(found)[1] < share
             or within_noise(self._at_first(self.held_out), self.config)
             or raises_measured(self._believed_gap(), self._gap(found.fitted), self.floor.measure)
         ):
@@ -113,6 +134,12 @@ class Further(Standing):
         rows = np.concatenate([np.full(len(s), s.rows_per_window) for s in scenes])
         of_pieces = np.bincount(np.repeat(piece, rows), weights=squares)
         return np.asarray(of_pieces, dtype=np.float64)
+
+
+def _lasts(effect: Effect) -> bool:
+    """Whether it is a name that acts all the time, and no fault of the reference."""
+    by_chance = isinstance(effect, Residual) or effect.name == LateByChance.name
+    return not (by_chance or effect.course)
 
 
 def further_candidates(

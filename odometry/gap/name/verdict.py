@@ -31,6 +31,8 @@ from odometry.gap.prepare.statistic import (
 )
 from odometry.windows.dense.dense import DenseWindows
 
+MAY_BE_CHANCE = "which may be chance"
+
 
 @dataclass(frozen=True)
 class Refusal:
@@ -101,7 +103,7 @@ def closes_held_out(
         return ""
     return (
         f"on held-out data the {measure.noun} goes from {was:.3g} to {now:.3g} {measure.unit}, "
-        "which may be chance"
+        f"{MAY_BE_CHANCE}"
     )
 
 

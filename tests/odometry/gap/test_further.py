@@ -5,6 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from odometry.effects.interface.in_course import in_course
+from odometry.effects.interface.time_course import Gradual
+from odometry.effects.motion.lateral_skid import LateralSkid
 from odometry.effects.unknown.residual import Residual
 from odometry.effects.unknown.residual_variables import FURTHER, REPEATED
 from odometry.gap.config import GapConfig
@@ -12,7 +15,9 @@ from odometry.gap.fit.contest import judge
 from odometry.gap.fit.fitter import Fitter
 from odometry.gap.name import accepted_effects, further
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.further import Further, further_candidates
+from odometry.gap.name.further import FEW, Further, further_candidates
+from odometry.gap.name.verdict import MAY_BE_CHANCE
+from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.statistic import floor_of
 
@@ -39,7 +44,7 @@ def other(make_scene):
 @pytest.fixture
 def few_stretches(monkeypatch):
     """What is held out alone leaves open whether anything gains."""
-    monkeypatch.setattr(accepted_effects, "closes_held_out", lambda *_: "may be chance")
+    monkeypatch.setattr(accepted_effects, "closes_held_out", lambda *_: MAY_BE_CHANCE)
 
 
 def searched(known, scene, held_out, residual=ON_ROLL):
@@ -54,12 +59,36 @@ def searched(known, scene, held_out, residual=ON_ROLL):
 @pytest.mark.usefixtures("few_stretches")
 def test_what_few_stretches_leave_open_the_measured_ones_decide(known, scene, other):
     search, found = searched(known, scene, other)
-    assert search._fails(found) == "may be chance"
+    assert search._fails(found) == MAY_BE_CHANCE
     assert search.sure_with_measured == [found]
     kept = search.further(Explanation(search.start, (), (), unexplained=True))
     assert kept.steps
     assert kept.fitted.cost <= found.fitted.cost
     assert not kept.unexplained
+
+
+def skidding(_, twist):
+    """A centre of rotation 0.2 m ahead of where it was."""
+    return twist + twist[:, 2:] * [0.0, -0.2, 0.0]
+
+
+@pytest.mark.usefixtures("few_stretches")
+@pytest.mark.parametrize(
+    ("effect", "duration_s", "stands"),
+    [
+        (LateralSkid(), 35.0, True),
+        (LateralSkid(), 75.0, False),  # of so many stretches a gain can be sure
+        (in_course(LateralSkid(), Gradual()), 35.0, False),
+    ],
+)
+def test_a_name_that_lasts_may_stand_by_the_stretches_measured(
+    known, make_scene, effect, duration_s, stands
+):
+    held_out = make_scene(6, skidding, duration_s=duration_s)
+    few = len(np.unique(numbered_pieces([held_out], CONFIG.part_s))) <= FEW
+    assert few == (duration_s < 40)
+    search, found = searched(known, make_scene(5, skidding), held_out, effect)
+    assert (search._fails(found) == "") == stands
 
 
 @pytest.mark.usefixtures("few_stretches")
@@ -77,7 +106,7 @@ def test_without_a_gap_nothing_is_searched_further(known, make_scene, monkeypatc
     still = make_scene(8)
     search, found = searched(known, still, make_scene(9))
     monkeypatch.setattr(further, "grown_of", None)
-    assert not search._is_sure_with_measured(found)
+    assert not search._is_sure_with_measured(found, CONFIG.least_of_rest)
     nothing = Explanation(search.start, (), ())
     assert search.further(nothing) is nothing
 
