@@ -17,8 +17,8 @@ from odometry.gap.name import accepted_effects, further
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.further import FEW, Further, further_candidates
 from odometry.gap.name.verdict import MAY_BE_CHANCE
-from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.measured import measured_of
+from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.statistic import floor_of
 
 CONFIG = GapConfig()
