@@ -6,11 +6,13 @@ before the next one was: the earliest of all times that later rows allow is that
 envelope of the stamps over their numbers.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
+from odometry.row_values import are_of_one_sensor
 from odometry.table import Table
 
 CLOSE = 0.2  # of the period: no steady sensor measures twice so soon
@@ -30,10 +32,12 @@ STALL, MADE_UP, MOSTLY = 5.0, 0.7, 0.8
 ON_TIME = 0.25  # of the period, by which such a share of the rows of that log are late at most
 # Share of rows that may be lost, or by which a clock may run off, before even stamps go wrong.
 SLACK = 0.02
-# Of the share of other rows that have a new value: rows that follow close and have one more rarely
-# are copies.
-SAME = 0.1
-SURELY = 10.0  # rows in which two columns would be new by chance
+# Of stamps that are coarse: rows of a steady sensor share them.
+STEPS_S = (1.0, 0.5, 0.25, 0.2, 0.1, 0.05, 0.02, 0.01)
+SHARED = 1.1  # periods, than which such a step is longer
+OFF = 1e-3  # of a step, by which stamps of that step are off at most
+LATER, NEARLY_ALL = 1.5, 0.95  # times a step, that so many rows are late: they came late as well
+ROUNDING_S = 1e-6  # of stamps from 1970, beside that
 
 
 class LateRows(NamedTuple):
@@ -44,29 +48,46 @@ class LateRows(NamedTuple):
     even_s : (N,)
         Stamps of no delay but one that all rows have; they increase, and none is later.
     late_s : (N,)
-        By how much the stamps of the file are later.
+        By how much the stamps of the file are later; coarse ones with what was cut off at most.
     close : (N,) of bool
         The rows that came together with the one before.
     period_s : float
+    step_s : float
+        Step of stamps that are coarse, of which several rows have the same; 0 of finer ones.
+    rows : Table
+        The rows as they were read, with those that share a stamp.
     """
 
     even_s: FloatArray
     late_s: FloatArray
     close: BoolArray
     period_s: float
+    step_s: float
+    rows: Table
 
     @property
     def uneven_s(self) -> float:
         """Standard deviation of how late rows are."""
         return float(np.std(self.late_s))
 
+    @property
+    def are_coarse(self) -> bool:
+        """Whether what was cut off the stamps explains nearly all of it."""
+        return float(np.quantile(self.late_s, NEARLY_ALL)) < LATER * self.step_s
+
+    def at(self, stamps_s: FloatArray) -> Table:
+        """The rows at other stamps (N,)."""
+        return replace(self.rows, columns={**self.rows.columns, "t": stamps_s})
+
 
 def late_rows(table: Table) -> LateRows | None:
     """Rows of a steady sensor that came late by chance, some together; None where they did not.
 
     They are as many as the time asks for: over a longer time they are off by no more than over a
-    shorter one. Rows that repeat the values of the one before were not measured with it, and merged
-    rows of several sensors have times of their own.
+    shorter one. Rows that share a stamp, which the reader drops, are rows like others: late ones in
+    stamps of few digits, or all of them in coarse stamps, of which the rest was cut off. Rows that
+    repeat the values of the one before were not measured with it, and rows of several sensors have
+    times of their own.
 
     Examples
     --------
@@ -77,6 +98,7 @@ def late_rows(table: Table) -> LateRows | None:
     >>> late_rows(run.odometry) is None
     True
     """
+    table = table.with_repeated()
     stamps_s, lasts_s = table.stamps_s, np.diff(table.stamps_s)
     rows = min(PIECE, len(stamps_s) // FEWEST)
     if rows < 2 * TIMES or np.any(lasts_s < 0):
@@ -85,14 +107,36 @@ def late_rows(table: Table) -> LateRows | None:
         (float(np.median(lasts_s)), _stalls),
         (_period_s(stamps_s, rows), _is_late_by_chance),
     ):
-        close = np.concatenate([[False], lasts_s < CLOSE * period_s])
-        even_s = even_stamps_s(stamps_s, period_s)
-        found = LateRows(even_s, stamps_s - even_s, close, period_s)
-        at_once_s = float(np.sum(lasts_s[close[1:]]))
+        if period_s <= 0:
+            continue
+        found = _at_even_stamps(table, period_s)
+        at_once_s = float(np.sum(lasts_s[found.close[1:]]))
         if at_once_s > AT_ONCE * (stamps_s[-1] - stamps_s[0]) or not is_late(stamps_s, found, rows):
             continue
-        return None if repeat_values(table, close) or _are_merged(table) else found
+        return found if are_of_one_sensor(table, found.close) else None
     return None
+
+
+def _at_even_stamps(rows: Table, period_s: float) -> LateRows:
+    step_s = _coarse_step_s(rows.stamps_s, period_s)
+    latest_s = rows.stamps_s + max(step_s - period_s / 2, 0.0)
+    even_s = even_stamps_s(latest_s, period_s)
+    close = np.diff(rows.stamps_s, prepend=-np.inf) < CLOSE * period_s
+    return LateRows(even_s, latest_s - even_s, close, period_s, step_s, rows)
+
+
+def _coarse_step_s(stamps_s: FloatArray, period_s: float) -> float:
+    """The step of stamps that are multiples of more than a period; 0 of finer ones."""
+    for step_s in STEPS_S:
+        off_s = np.abs(stamps_s - step_s * np.round(stamps_s / step_s))
+        if step_s > SHARED * period_s and off_s.max() < OFF * step_s + ROUNDING_S:
+            return step_s
+    return 0.0
+
+
+def most_at_once(late: LateRows) -> int:
+    """The most rows that have one stamp."""
+    return int(np.unique(late.rows.stamps_s, return_counts=True)[1].max())
 
 
 def even_stamps_s(stamps_s: FloatArray, period_s: float) -> FloatArray:
@@ -138,29 +182,3 @@ def _stalls(stamps_s: FloatArray, found: LateRows, _: int) -> bool:
     together = alone[np.searchsorted(alone, before + 1, side="right")] - before - 1
     made_up = together * found.period_s > MADE_UP * lasts_s[before]
     return bool(made_up.mean() > MOSTLY)
-
-
-def repeat_values(table: Table, close: BoolArray) -> bool:
-    """Whether rows (N,) that follow close repeat the values before them, and others do not."""
-    change = False
-    for name, column in table.columns.items():
-        if name == "t" or column.dtype.kind != "f":
-            continue
-        known = np.isfinite(column[1:] + column[:-1])
-        new = np.diff(column) != 0
-        together, others = new[known & close[1:]], new[known & ~close[1:]]
-        if np.sum(together) * len(others) > SAME * np.sum(others) * len(together):
-            return False
-        change |= bool(others.any())
-    return change
-
-
-def _are_merged(table: Table) -> bool:
-    """Whether most rows are new in one of two columns, and none in both: the latest of each."""
-    columns = [v for name, v in table.columns.items() if name != "t" and v.dtype.kind == "f"]
-    steps = np.diff(np.array(columns), axis=1)
-    new = (np.isfinite(steps) & (steps != 0)).astype(np.float64)
-    rows, counts, both = new.shape[1], new.sum(axis=1), new @ new.T
-    by_chance = np.outer(counts, counts) / rows
-    in_turn = (by_chance > SURELY) & (both < SAME * by_chance)
-    return bool((in_turn & (np.add.outer(counts, counts) - both > MOSTLY * rows)).any())

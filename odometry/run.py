@@ -198,4 +198,10 @@ def robot_labels(robots: Sequence[Robot]) -> dict[tuple[str, float], str]:
 def with_stamps(run: Run, name: str, stamps_s: FloatArray) -> Run:
     """The run with other stamps (N,) in one of its tables."""
     table = getattr(run, name)
-    return replace(run, **{name: replace(table, columns={**table.columns, "t": stamps_s})})
+    return with_table(run, name, replace(table, columns={**table.columns, "t": stamps_s}))
+
+
+def with_table(run: Run, name: str, table: Table) -> Run:
+    """The run with another table in place of one."""
+    changed: dict[str, Any] = {name: table}
+    return replace(run, **changed)

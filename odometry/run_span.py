@@ -100,7 +100,7 @@ def _cut_held(table: Table, from_s: float, to_s: float) -> Table:
     return replace(
         held,
         columns={**held.columns, "t": held_s},
-        repeated_lines=table.rows(rows).repeated_lines,
+        repeated=table.rows(rows).repeated,
     )
 
 

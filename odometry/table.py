@@ -1,7 +1,7 @@
 """A time-stamped table: the columns of one CSV file of a run folder, and cells that are missing."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,14 +24,14 @@ class Table:
         Numbers as float64, names as str. Not measured is NaN, or an empty name.
     lines : (N,)
         Line number of each row in the file, header = 1.
-    repeated_lines : (R,)
-        Lines that were dropped: each repeated the stamp of the row before it.
+    repeated : Table or None
+        Rows that were dropped: each repeated the stamp of the row before it.
     """
 
     file: Path
     columns: Mapping[str, AnyArray]
     lines: IntArray
-    repeated_lines: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    repeated: "Table | None" = None
 
     def __len__(self) -> int:
         return len(self.columns["t"])
@@ -51,17 +51,35 @@ class Table:
         """Stamps (N,) in seconds, strictly increasing."""
         return self["t"]
 
+    @property
+    def repeated_lines(self) -> IntArray:
+        """Lines (R,) of the rows that were dropped."""
+        return np.empty(0, dtype=np.int64) if self.repeated is None else self.repeated.lines
+
     def stack(self, *names: str) -> FloatArray:
         """The named columns side by side, (N, len(names))."""
         return np.stack([self[name] for name in names], axis=-1)
 
     def rows(self, chosen: slice | IntArray) -> "Table":
-        """The same table with only the chosen rows, and the dropped lines that repeated them."""
+        """The same table with only the chosen rows, and the dropped rows that repeated them."""
         columns = {name: column[chosen] for name, column in self.columns.items()}
-        lines = self.lines[chosen]
-        repeats_of = self.lines[np.searchsorted(self.lines, self.repeated_lines) - 1]
-        repeated = self.repeated_lines[np.isin(repeats_of, lines)]
-        return replace(self, columns=columns, lines=lines, repeated_lines=repeated)
+        lines, repeated = self.lines[chosen], self.repeated
+        if repeated is not None:
+            repeats_of = self.lines[np.searchsorted(self.lines, repeated.lines) - 1]
+            repeated = repeated.rows(np.flatnonzero(np.isin(repeats_of, lines)))
+        return replace(self, columns=columns, lines=lines, repeated=repeated)
+
+    def with_repeated(self) -> "Table":
+        """The rows of the file, with those that share a stamp, in the order of their lines."""
+        if self.repeated is None:
+            return self
+        lines = np.concatenate([self.lines, self.repeated.lines])
+        order = np.argsort(lines, kind="stable")
+        columns = {
+            name: np.concatenate([column, self.repeated[name]])[order]
+            for name, column in self.columns.items()
+        }
+        return Table(self.file, columns, lines[order])
 
     def to_pandas(self) -> Any:
         """The columns as a pandas DataFrame, rows numbered from 0; an empty name is missing.

@@ -44,6 +44,7 @@ from odometry.checks.stamps.joined_recordings import joined_recordings, without_
 from odometry.checks.stamps.late_by_chance import spread_late, without_explained_lags
 from odometry.checks.stamps.late_positions import late_positions, position_lag
 from odometry.checks.stamps.one_column_late import one_column_late
+from odometry.checks.stamps.repeated_stamps import repeated_stamps
 from odometry.checks.stamps.set_back import set_back
 from odometry.checks.stamps.short_delay import slightly_late
 from odometry.checks.stamps.silent_rows import silent_rows
@@ -75,6 +76,7 @@ Check = Callable[[Evidence], Iterator[Finding]]
 
 # Findings of one level are reported in this order: a cause before its consequences.
 CHECKS: tuple[Check, ...] = (
+    repeated_stamps,
     stamps,
     stamp_pace,
     set_back,
@@ -159,6 +161,7 @@ def check_recording(run: Run | str | Path) -> CheckReport:
             run = Run.read(run)
         except RunFolderError as error:
             return CheckReport(Path(str(run)), (unreadable(error),))
+    shared, run, shared_late_s = spread_late(run, shared=True)
     refused = tuple(unreadable_stamps(run))
     if any(finding.level is Level.REFUSED for finding in refused):
         return CheckReport(run.folder, refused)
@@ -166,13 +169,14 @@ def check_recording(run: Run | str | Path) -> CheckReport:
         return CheckReport(run.folder, refused, ("fewer than ten rows of odometry.csv",))
     with np.errstate(over="ignore", invalid="ignore"):
         bursts, run = spread_bursts(run)
-        late, run, most_late_s = spread_late(run)
+        late, run, most_late_s = spread_late(run, shared=False)
         wrapped, run = unwrapped(run)
         copies, evidence = copied_columns(run)
         found = alone(evidence, [*refused, *_found(evidence)], _found)
-        found = without_explained_lags(found, evidence, most_late_s)
+        found = without_explained_lags(found, evidence, {**shared_late_s, **most_late_s})
         confirmed_ones = confirmed(evidence, without_consequences(without_seams(found)), _found)
-        said = [*wrapped, *copies, *without_consequences([*bursts, *late, *confirmed_ones])]
+        of_stamps = [*shared, *bursts, *late]
+        said = [*wrapped, *copies, *without_consequences([*of_stamps, *confirmed_ones])]
         stays = list(poses_stay(evidence, said))
         of_velocity = list(velocity(evidence))  # which no other check uses
     findings = in_order([*said, *stays, *of_velocity])

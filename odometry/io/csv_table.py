@@ -4,6 +4,7 @@ import csv
 import math
 from array import array
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from odometry.table import Table
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:
     """Read a CSV file whose columns are found by name, in any order.
 
-    A row that repeats the stamp of the row before it is dropped; `Table.repeated_lines` has it.
+    A row that repeats the stamp of the row before it is dropped; `Table.repeated` has it.
 
     Parameters
     ----------
@@ -69,11 +70,16 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
     }
     all_lines = np.frombuffer(lines, dtype=np.int64)
     _check_not_back(columns["t"], file, all_lines)
-    repeated = np.diff(columns["t"], prepend=-math.inf) == 0
-    if repeated.any():
-        columns = {name: column[~repeated] for name, column in columns.items()}
-    kept_lines = all_lines[~repeated] if repeated.any() else all_lines
-    return Table(file, columns, kept_lines, all_lines[repeated])
+    return without_repeated(Table(file, columns, all_lines))
+
+
+def without_repeated(table: Table) -> Table:
+    """The first row of each stamp of a table whose stamps do not go back; it keeps the others."""
+    repeated = np.diff(table.stamps_s, prepend=-math.inf) == 0
+    if not repeated.any():
+        return table
+    kept, dropped = (table.rows(np.flatnonzero(rows)) for rows in (~repeated, repeated))
+    return replace(kept, repeated=dropped)
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:

@@ -6,20 +6,20 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.timing import TOGETHER, lags_of
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
-from odometry.late_rows import LateRows, late_rows
+from odometry.late_rows import NEARLY_ALL, LateRows, late_rows, most_at_once
 from odometry.preparation.row_rates import EARLY_S
-from odometry.run import Run, with_stamps
+from odometry.run import Run, with_stamps, with_table
 
 SIGMAS = 3.0  # of the lag beyond that
-NEARLY_ALL = 0.95  # share of the rows, which are late by as much at least as all may be
 
 
 def with_even_rows(run: Run, config: IcrEkfConfig) -> tuple[Run, tuple[FilterEvent, ...]]:
-    """The run with even stamps of odometry.csv and imu.csv where theirs are those of arrival.
+    """The run with even stamps of odometry.csv and imu.csv: theirs are of arrival, or coarse.
 
-    See `odometry.late_rows`. What is left, the delay of the rows that came fastest, is that by
-    which poses with yaw then are too early against the gyroscope. Unless `config` is `causal` or
-    does not watch its sensors; with an event for each file.
+    Rows that share a stamp are there again. See `odometry.late_rows`. What is left, the delay of
+    the rows that came fastest, is that by which poses with yaw then are too early against the
+    gyroscope. Unless `config` is `causal` or does not watch its sensors; with an event for each
+    file.
     """
     if config.causal or not config.watch_sensors:
         return run, ()
@@ -29,7 +29,7 @@ def with_even_rows(run: Run, config: IcrEkfConfig) -> tuple[Run, tuple[FilterEve
         if (table := getattr(run, name)) is not None and (found := late_rows(table)) is not None
     }
     for name, rows in late.items():
-        run = with_stamps(run, name, rows.even_s)
+        run = with_table(run, name, rows.at(rows.even_s))
     gyroscope, left_s = _left(run, late) if late and not config.pose_delay_s else ("", 0.0)
     events = []
     for name, rows in late.items():
@@ -52,11 +52,16 @@ def _left(run: Run, late: dict[str, LateRows]) -> tuple[str, float]:
 
 
 def _event(file: str, rows: LateRows, of_all_s: float) -> FilterEvent:
-    begin_s, end_s = (rows.even_s + rows.late_s)[[0, -1]].tolist()
+    begin_s, end_s = rows.rows.stamps_s[[0, -1]].tolist()
     left = f", {of_all_s:.2g} s by the yaw of poses, was undone" if of_all_s else " is not known"
+    stamps = (
+        f"stamps in steps of {rows.step_s:g} s, which {most_at_once(rows)} rows share at most: "
+        if rows.are_coarse
+        else f"stamps of arrival, late by {rows.late_s.mean():.2g} s in the mean "
+        f"and {rows.late_s.max():.2g} s at most beside even ones: "
+    )
     text = (
-        f"rows of {file} have stamps of arrival, late by {rows.late_s.mean():.2g} s in the mean "
-        f"and {rows.late_s.max():.2g} s at most beside even ones: they were taken at even stamps; "
-        f"what all of them are late by{left}"
+        f"rows of {file} have {stamps}they were taken at even stamps; what all of them are late by"
+        f"{left}"
     )
     return FilterEvent("late_rows", begin_s, end_s, text, (rows.uneven_s, of_all_s))

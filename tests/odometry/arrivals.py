@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from odometry.io.csv_table import without_repeated
 from odometry.table import Table
 
 
@@ -26,10 +27,16 @@ def after_stalls(stamps_s, every_s=15.0, lasts_s=1.0):
     return in_order(np.where(end_s - stamps_s < lasts_s, end_s, stamps_s))
 
 
+def cut_off(stamps_s, step_s):
+    """The stamps in whole steps."""
+    return step_s * np.floor(np.round(stamps_s / step_s, 6))
+
+
 def stamped(table, stamps_s, rows=slice(None)):
-    """Other stamps, of all or of some rows."""
+    """Other stamps, of all or of some rows, as a reader leaves them."""
     columns = {name: np.asarray(values)[rows] for name, values in table.columns.items()}
-    return Table(table.file, {**columns, "t": stamps_s}, table.lines[rows])
+    lines = np.arange(2, len(stamps_s) + 2)
+    return without_repeated(Table(table.file, {**columns, "t": stamps_s}, lines))
 
 
 def with_arrival(run, change=by_chance):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.late_rows import SLACK, even_stamps_s, late_rows
-from tests.odometry.arrivals import after_stalls, by_chance, stamped
+from tests.odometry.arrivals import after_stalls, by_chance, cut_off, stamped
 from tests.odometry.checks.drives import PERIOD_S, table, winding
 
 
@@ -27,13 +27,31 @@ LATE = {
 }
 
 
+@pytest.mark.parametrize("step_s", [1e-6, 1e-3, 1e-2])
 @pytest.mark.parametrize("change", LATE.values(), ids=LATE)
-def test_even_stamps_are_nearly_those_of_the_measurement(rows, change):
-    arrived_s = change(rows.stamps_s)
+def test_even_stamps_are_nearly_those_of_the_measurement(rows, change, step_s):
+    """Rows that came at once share stamps of few digits: the reader drops all but the first."""
+    arrived_s = cut_off(change(rows.stamps_s), step_s)
     late = late_rows(stamped(rows, arrived_s))
     assert late.period_s == pytest.approx(PERIOD_S, rel=0.01)
     assert np.std(late.even_s - rows.stamps_s) < 0.3 * np.std(arrived_s - rows.stamps_s)
     assert late.late_s == pytest.approx(arrived_s - late.even_s)
+    assert late.rows["v_left"].tolist() == rows["v_left"].tolist()
+    assert not late.are_coarse
+
+
+@pytest.mark.parametrize("step_s", [0.1, 0.25, 1.0])
+@pytest.mark.parametrize("began_s", [0.0, 0.03, 1.7e9 + 0.02])
+def test_rows_of_coarse_stamps_are_spread_over_their_steps(rows, step_s, began_s):
+    true_s = began_s + rows.stamps_s
+    late = late_rows(stamped(rows, cut_off(true_s, step_s)))
+    assert (late.step_s, late.are_coarse) == (step_s, True)
+    assert np.abs(late.even_s - true_s).max() < PERIOD_S + 3 * SLACK * step_s
+    assert len(late.even_s) == len(rows)
+
+
+def test_rows_that_are_late_by_more_than_a_step_came_late(rows):
+    assert not late_rows(stamped(rows, cut_off(by_chance(rows.stamps_s, 0.3), 0.1))).are_coarse
 
 
 def test_treads_that_are_measured_in_turn_are_no_merged_logs(rows):
@@ -115,7 +133,26 @@ def now_and_then(rows):
     return stamped(rows, rows.stamps_s[kept], kept)
 
 
+def at_one_stamp(rows, second, step_s=1e-3):
+    """Each row is followed by another of its stamp."""
+    each = np.repeat(np.arange(len(rows)), 2)
+    both = stamped(rows, rows.stamps_s[each] + 1e-9 * (np.arange(len(each)) % 2), each)
+    for name in ("v_left", "v_right", "gyro_z"):
+        both.columns[name][1::2] = second(rows[name])
+    return stamped(both, cut_off(both.stamps_s, step_s))
+
+
 OTHERS = {
+    "copies at one stamp": lambda rows: at_one_stamp(rows, lambda v: v),
+    "copies in other digits": lambda rows: at_one_stamp(rows, np.float32),
+    "a command beside": lambda rows: at_one_stamp(rows, lambda v: np.roll(v, -8)),
+    "another robot beside": lambda rows: at_one_stamp(rows, lambda v: np.roll(v, 800), 0.1),
+    "times by chance, in ms": lambda rows: stamped(
+        rows, cut_off(own_times(rows, lambda r, n: r.exponential(0.05, n)).stamps_s, 1e-3)
+    ),
+    "changes of 0.02 m/s, in 0.1 s": lambda rows: stamped(
+        changed := of_changes(rows, 0.02), cut_off(changed.stamps_s, 0.1)
+    ),
     "even": lambda rows: rows,
     "rows lost": lambda rows: lost(rows, 0.1),
     "rows lost at most times": lambda rows: lost(rows, 0.6),

@@ -1,13 +1,14 @@
 """Rows of odometry.csv with other stamps than those of the measurement: what is said, and lost.
 
-    python -m tests.studies.late_rows [--held-out] [--only FAULT] [--arrival]
+    python -m tests.studies.late_rows [--held-out] [--only FAULT] [--arrival] [--tables NAMES]
 
 Needs TERRAIN_ODOMETRY_DATA. The stamps of real recordings with poses are made faulty. For each
 fault: what `check` finds that it does not find in the recording as it is (the first of each), and
 the errors of `run` over 5 m of wheel travel, metres and degrees per metre of the odometer, the same
 of the estimate on withheld poses, as the geometric mean of ratios to those without the fault.
 True stamps are known: all errors are at the true poses and the true wheel travel. `--arrival` takes
-the stamps as they are. Drives are dealt into development and held out whole.
+the stamps as they are. `--tables pose` or `odometry,pose` have the stamps of other files faulty.
+Drives are dealt into development and held out whole.
 """
 
 import argparse
@@ -22,6 +23,7 @@ import numpy as np
 
 import odometry.preparation.prepared as preparation
 from odometry.checks.recording import check_recording
+from odometry.io.csv_table import without_repeated
 from odometry.run import Run
 from odometry.table import Table
 from terrain.main_job import run_odometry
@@ -52,6 +54,11 @@ def wait(t, rng, mean_s, share=1.0):
     return rng.exponential(mean_s, len(t)) * (rng.random(len(t)) < share)
 
 
+def cut_off(t, steps):
+    """The stamps in so many steps a second."""
+    return np.floor(np.round(steps * t, 6)) / steps
+
+
 FAULTS = {
     "none": lambda t, _: t,
     "late by chance, 20 ms": lambda t, rng: in_order(t + wait(t, rng, 0.02)),
@@ -69,7 +76,18 @@ FAULTS = {
     "a stall of 1 s a minute": lambda t, rng: stalls(t, rng, 60, 1),
     "stalls of 0.3 s each 10 s": lambda t, rng: stalls(t, rng, 10, 0.3),
     "before and after, by 50 ms": lambda t, rng: in_order(t + rng.normal(0, 0.05, len(t))),
-    "whole 0.1 s": lambda t, _: 0.1 * np.floor(np.round(10 * t, 6)),
+    "120 ms, whole ms": lambda t, rng: cut_off(in_order(t + wait(t, rng, 0.12)), 1000),
+    "120 ms, rounded to 10 ms": lambda t, rng: np.round(in_order(t + wait(t, rng, 0.12)), 2),
+    "5 % by 200 ms, whole ms": lambda t, rng: cut_off(in_order(t + wait(t, rng, 0.2, 0.05)), 1000),
+    "bursts of 3 to 20, whole ms": lambda t, rng: cut_off(bursts(t, rng, 3, 20), 1000),
+    "stalls of 1 s each 10 s, whole ms": lambda t, rng: cut_off(stalls(t, rng, 10, 1), 1000),
+    "a stall of 1 s a minute, whole ms": lambda t, rng: cut_off(stalls(t, rng, 60, 1), 1000),
+    "whole 0.1 s": lambda t, _: cut_off(t, 10),
+    "rounded to 0.1 s": lambda t, _: np.round(t, 1),
+    "whole 0.25 s": lambda t, _: cut_off(t, 4),
+    "whole s": lambda t, _: cut_off(t, 1),
+    "rounded to s": lambda t, _: np.round(t),
+    "whole s, 120 ms late": lambda t, rng: cut_off(in_order(t + wait(t, rng, 0.12)), 1),
     "0.3 s by turns, each 2 min": lambda t, _: t + 0.15 * (1 - np.cos(2 * np.pi * t / 120)),
 }
 
@@ -79,7 +97,9 @@ def main():
     parser.add_argument("--held-out", action="store_true")
     parser.add_argument("--only", action="append", choices=sorted(FAULTS), help="repeat")
     parser.add_argument("--arrival", action="store_true", help="stamps are not made even")
+    parser.add_argument("--tables", default="odometry", help="names, with commas")
     options = parser.parse_args()
+    tables = options.tables.split(",")
     if options.arrival:
         preparation.with_even_rows = lambda run, _: (run, ())
     folder = Folder(os.environ["TERRAIN_ODOMETRY_DATA"]) / "motion"
@@ -91,14 +111,14 @@ def main():
     ]
     as_is = [(said(run), errors(run, run)) for run in runs]
     for fault in options.only or FAULTS:
-        print_fault(fault, runs, as_is)
+        print_fault(fault, tables, runs, as_is)
 
 
-def print_fault(fault, runs, as_is):
+def print_fault(fault, tables, runs, as_is):
     """What is said first, and by how many times errors grow, mean and (worst)."""
     first, ratios = Counter(), []
     for run, (known, before) in zip(runs, as_is, strict=True):
-        late = faulty(run, fault)
+        late = faulty(run, fault, tables)
         new = [name for name in said(late) if name not in known]
         first[new[0] if new else "-"] += 1
         ratios.append(errors(late, run) / before)
@@ -107,17 +127,18 @@ def print_fault(fault, runs, as_is):
           zip(mean, worst, strict=True)), flush=True)  # fmt: skip
 
 
-def faulty(run, fault):
-    """The run with the stamps of a fault; repeated ones are dropped, as a reader does."""
-    table = run.odometry
-    rng = np.random.default_rng(zlib.crc32(f"{run.name} {fault}".encode()))
+def faulty(run, fault, names):
+    """The run with the stamps of a fault in some tables; rows as a reader leaves them."""
+    return replace(run, **{name: arrived(getattr(run, name), run.name, fault) for name in names})
+
+
+def arrived(table, name, fault):
+    rng = np.random.default_rng(zlib.crc32(f"{name} {fault}".encode()))
     stamps_s = FAULTS[fault](table.stamps_s, rng)
     rows = np.argsort(stamps_s, kind="stable")
-    new = np.append(True, np.diff(stamps_s[rows]) > 0)
-    columns = {name: column[rows[new]] for name, column in table.columns.items()}
-    columns["t"] = stamps_s[rows[new]]
-    lines = np.arange(2, len(rows) + 2)
-    return replace(run, odometry=Table(table.file, columns, lines[new], lines[~new]))
+    columns = {name: column[rows] for name, column in table.columns.items()}
+    late = Table(table.file, {**columns, "t": stamps_s[rows]}, np.arange(2, len(rows) + 2))
+    return without_repeated(late)
 
 
 def said(run):

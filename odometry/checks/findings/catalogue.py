@@ -13,6 +13,7 @@ CATALOGUE: dict[str, str] = {
     "repeated_stamps": "rows that repeat a stamp were dropped",
     "epoch_stamps": "stamps count from 1970",
     "uneven_stamps": "stamps of arrival: rows late by chance, in bursts, or after a stall",
+    "coarse_stamps": "stamps in whole seconds or tenths, which several rows share",
     "repeated_rows": "rows that are written more than once, some time apart",
     "empty_cells": "rows without a value, in columns that others have",
     "odometry_gap": "rows of odometry.csv are lost",

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.late_rows import repeat_values
+from odometry.row_values import repeat_values
 from odometry.run import Run, with_stamps
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most

@@ -7,14 +7,14 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
-from odometry.late_rows import LateRows, late_rows
-from odometry.run import Run, with_stamps
-from odometry.windows.recorded.spans import runs_of
+from odometry.late_rows import NEARLY_ALL, LateRows, late_rows, most_at_once
+from odometry.run import Run, with_table
+from odometry.windows.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
+WARNED_STEP_S = 0.1  # of coarse stamps: what all rows are off by is no more
 HELD_UP = 0.5  # of the period, by which a row is late
 FEW = 0.2  # share of the rows: where fewer are late, they were held up now and then
-NEARLY_ALL = 0.95  # share of the rows
 LAGS = frozenset(
     {"pose_late", "yaw_late", "positions_late", "gyroscope_late", "treads_late", "clocks_apart"}
 )
@@ -29,19 +29,23 @@ REMEDY = (
 )
 
 
-def spread_late(run: Run) -> tuple[list[Finding], Run, Mapping[str, float]]:
+def spread_late(run: Run, *, shared: bool) -> tuple[list[Finding], Run, Mapping[str, float]]:
     """A finding for each file with late rows, and the run with even stamps in place of theirs.
 
-    Also how late nearly all rows of these files are at most: all of them may be.
+    `shared` looks at files whose rows share stamps, else at the others. Also how late nearly all
+    rows of these files are at most: all of them may be.
     """
     found, most_s, began_s = [], {}, float(run.odometry.stamps_s[0])
     for name in ("odometry", "imu"):
         table = getattr(run, name)
-        late = None if table is None else late_rows(table)
+        if table is None or shared == (table.repeated is None):
+            continue
+        late = late_rows(table)
         if late is not None:
-            found.append(_finding(f"{name}.csv", late, began_s))
+            finding = _coarse if late.are_coarse else _finding
+            found.append(finding(f"{name}.csv", late, began_s))
             most_s[f"{name}.csv"] = float(np.quantile(late.late_s, NEARLY_ALL))
-            run = with_stamps(run, name, late.even_s)
+            run = with_table(run, name, late.at(late.even_s))
     return found, run, most_s
 
 
@@ -75,4 +79,16 @@ def _finding(file: str, late: LateRows, began_s: float) -> Finding:
         ARRIVAL + (HANDED_ON if many else STALLED),
         REMEDY,
         () if many else tuple((even_s[a].item(), even_s[b - 1].item()) for a, b in stretches),
+    )
+
+
+def _coarse(file: str, late: LateRows, _: float) -> Finding:
+    return Finding(
+        "coarse_stamps",
+        Level.WARNING if late.step_s > WARNED_STEP_S else Level.NOTE,
+        f"stamps of {file} are multiples of {late.step_s:g} s, and up to {most_at_once(late)} rows "
+        f"share one; the rows are as many as {1 / late.period_s:.3g} Hz ask for",
+        "The logger writes time in too few digits",
+        "Write stamps with milliseconds; verbs that fit or follow a run take even stamps (`causal` "
+        f"and live ones cannot). All of them may be early or late by up to {late.step_s:g} s",
     )

@@ -1,4 +1,4 @@
-"""Units of stamps, files of different times, gaps, and rows that were dropped."""
+"""Units of stamps, files of different times, clocks that were set, and lost digits."""
 
 from collections.abc import Iterator
 
@@ -7,6 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.row_values import are_copies
 from odometry.run import Run
 from odometry.table import Table
 
@@ -42,7 +43,7 @@ def unreadable_stamps(run: Run) -> Iterator[Finding]:
     tables = tables_of(run)
     odometry_s = run.odometry.stamps_s
     repeated, rows = len(run.odometry.repeated_lines), len(run.odometry)
-    if repeated > MOSTLY_REPEATED * (repeated + rows):
+    if repeated > MOSTLY_REPEATED * (repeated + rows) and not are_copies(run.odometry):
         yield _refused(
             "stamps_lost_digits",
             f"odometry.csv repeats the stamp of the row before in {repeated} of {repeated + rows} "
@@ -182,26 +183,7 @@ def _apart(name: str, stamps_s: FloatArray, odometry_s: FloatArray) -> Iterator[
 
 
 def stamps(evidence: Evidence) -> Iterator[Finding]:
-    """Notes on stamps: rows dropped, epoch stamps."""
-    for name, table in tables_of(evidence.run).items():
-        dropped = table.repeated_lines
-        if len(dropped):
-            share = len(dropped) / (len(dropped) + len(table))
-            first = ", ".join(map(str, dropped[:3])) + (" ..." if len(dropped) > 3 else "")
-            yield Finding(
-                "repeated_stamps",
-                Level.WARNING if share > 0.2 else Level.NOTE,
-                f"{name} repeats the stamp of the row before in {counted(len(dropped), 'row')} "
-                f"({100 * share:.3g} %; row {first}), and they were dropped",
-                "The logger wrote a stamp twice"
-                if share <= 0.2
-                else "Stamps have too few digits, or are those of arrival of rows that were sent "
-                "several at once, or two recordings were merged; the rows that are left are not of "
-                "their times, so that delays were not judged",
-                "Nothing to do"
-                if share <= 0.2
-                else "Write stamps with more digits, or one source alone, and check again",
-            )
+    """A note on epoch stamps."""
     if evidence.stamps_s[0] > EPOCH_S:
         yield Finding(
             "epoch_stamps",

@@ -114,7 +114,7 @@ def test_a_log_of_changes_is_clean(recording):
     assert not check_recording(replace(run, odometry=table)).misleads
 
 
-def test_a_repeated_row_is_a_note(recording, tmp_path):
+def test_a_row_that_is_written_twice_is_a_note(recording, tmp_path):
     folder = recording(RECORDING).folder
     for file in ("run.toml", "odometry.csv", "pose.csv"):
         (tmp_path / file).write_text((folder / file).read_text())
@@ -123,7 +123,8 @@ def test_a_repeated_row_is_a_note(recording, tmp_path):
     (tmp_path / "odometry.csv").write_text("\n".join(lines) + "\n")
     report = check_recording(tmp_path)
     (repeated,) = report.findings
-    assert (repeated.name, repeated.level) == ("repeated_stamps", Level.NOTE)
+    assert (repeated.name, repeated.level) == ("repeated_rows", Level.NOTE)
+    assert "repeats the stamp and the values of the row before in 1 row" in repeated.seen
     assert "row 102" in repeated.seen
 
 

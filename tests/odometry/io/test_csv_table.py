@@ -107,6 +107,17 @@ def test_a_row_that_repeats_the_stamp_before_it_is_dropped(read):
     assert (table.lines.tolist(), table.repeated_lines.tolist()) == ([2, 4, 7], [3, 5, 6])
 
 
+def test_rows_that_were_dropped_are_kept_beside(read):
+    table = read("t,x\n1,2\n1,3\n2,4\n2,5\n2,6\n3,7\n")
+    assert table.repeated["x"].tolist() == [3, 5, 6]
+    whole = table.with_repeated()
+    assert (whole["x"].tolist(), whole["t"].tolist()) == ([2, 3, 4, 5, 6, 7], [1, 1, 2, 2, 2, 3])
+    assert whole.lines.tolist() == [2, 3, 4, 5, 6, 7]
+    part = table.rows(slice(1, 3)).with_repeated()
+    assert part["x"].tolist() == [4, 5, 6, 7]
+    assert whole.with_repeated() is whole
+
+
 def test_a_column_that_must_be_complete_has_no_empty_cell(read):
     assert_refused(read, "t,x\n1,\n", "row 2", "x", complete=("t", "x"))
     assert_refused(read, "t,x\n1,nan\n", "row 2", "x", complete=("t", "x"))

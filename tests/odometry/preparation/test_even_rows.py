@@ -9,7 +9,7 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.even_rows import EARLY_S, with_even_rows
 from odometry.preparation.prepared import prepared_run
 from terrain.main_job import run_odometry
-from tests.odometry.arrivals import after_stalls, by_chance, with_arrival
+from tests.odometry.arrivals import after_stalls, by_chance, cut_off, with_arrival
 from tests.odometry.checks.drives import PERIOD_S, table, winding
 from tests.odometry.checks.faulty import pose_stamps, without_yaw
 
@@ -29,6 +29,24 @@ def test_late_rows_are_taken_at_even_stamps(driven):
     assert after < 0.3 * before
     assert event.values[0] == pytest.approx(before, rel=0.2)
     assert prepared_run(late, IcrEkfConfig(), ())[2][0] == event
+
+
+def test_rows_that_share_a_coarse_stamp_are_there_again(driven):
+    coarse = with_arrival(driven, lambda stamps_s: cut_off(stamps_s, 1.0))
+    assert len(coarse.odometry) < len(driven.odometry) / 19
+    taken, (event,) = with_even_rows(coarse, IcrEkfConfig())
+    assert taken.odometry["v_left"].tolist() == driven.odometry["v_left"].tolist()
+    assert np.abs(taken.odometry.stamps_s - driven.odometry.stamps_s).max() < 0.1
+    assert "steps of 1 s, which 20 rows share" in event.text
+    assert taken.odometry.repeated is None
+
+
+def test_stamps_that_were_rounded_are_put_right_by_the_yaw_of_poses(driven):
+    """To the nearest second: half of one later than stamps of which the rest was cut off."""
+    coarse = with_arrival(driven, lambda stamps_s: cut_off(stamps_s + 0.5, 1.0))
+    taken, (event,) = with_even_rows(coarse, IcrEkfConfig())
+    assert "by the yaw of poses" in event.text
+    assert np.mean(taken.odometry.stamps_s - driven.odometry.stamps_s) == pytest.approx(0, abs=0.06)
 
 
 @pytest.mark.parametrize("of_all_s", [0.2, 0.4])

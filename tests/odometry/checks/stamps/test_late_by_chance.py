@@ -7,7 +7,8 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from tests.odometry.arrivals import after_stalls, by_chance, stamped, with_arrival
+from odometry.checks.stamps.late_by_chance import LAGS
+from tests.odometry.arrivals import after_stalls, by_chance, cut_off, stamped, with_arrival
 from tests.odometry.checks.drives import table, turning_all_round
 from tests.odometry.checks.faulty import pose_stamps, positions
 
@@ -75,11 +76,30 @@ def test_rows_microseconds_apart_are_in_no_unit_of_hours(driven):
 
 @pytest.mark.parametrize("digits", [2, 3, 4])
 @pytest.mark.parametrize("seed", range(3))
-def test_delays_are_not_judged_where_late_rows_share_stamps_and_were_dropped(driven, digits, seed):
+def test_late_rows_that_share_stamps_are_late_ones(driven, digits, seed):
+    late = with_arrival(driven, lambda t: np.round(by_chance(t, seed=seed), digits))
+    assert len(late.odometry.repeated_lines) > 1000
+    (found,) = check_recording(late).findings
+    assert (found.name, found.level) == ("uneven_stamps", Level.WARNING)
+
+
+@pytest.mark.parametrize(
+    ("step_s", "level", "words"),
+    [(0.1, Level.NOTE, "up to 2 rows share one"), (1.0, Level.WARNING, "up to 20 rows share one")],
+)
+def test_stamps_in_whole_steps_are_the_only_finding(driven, step_s, level, words):
+    coarse = with_arrival(driven, lambda stamps_s: cut_off(stamps_s, step_s))
+    (found,) = check_recording(coarse).findings
+    assert (found.name, found.level) == ("coarse_stamps", level)
+    assert words in found.seen
+    assert "20 Hz" in found.seen
+
+
+def test_delays_are_not_judged_where_other_rows_share_stamps_and_were_dropped(driven):
     rows = driven.odometry
-    arrived_s = np.round(by_chance(rows.stamps_s, seed=seed), digits)
-    stamps_s, first = np.unique(arrived_s, return_index=True)
-    left = stamped(rows, stamps_s, first)
-    left = replace(left, repeated_lines=np.delete(rows.lines, first))
-    found = check_recording(replace(driven, odometry=left)).findings
-    assert [each.name for each in found] == ["repeated_stamps"]
+    own_s = np.cumsum(np.random.default_rng(0).exponential(0.05, len(rows)))
+    columns = {name: np.interp(own_s, rows.stamps_s, rows[name]) for name in rows.columns}
+    irregular = stamped(replace(rows, columns=columns), cut_off(own_s, 0.1))
+    found = check_recording(replace(driven, odometry=irregular)).findings
+    assert "repeated_stamps" in [each.name for each in found]
+    assert not {each.name for each in found} & LAGS
