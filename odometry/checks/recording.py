@@ -30,6 +30,7 @@ from odometry.checks.poses.poses import pose_outages, poses
 from odometry.checks.poses.poses_stay import poses_stay
 from odometry.checks.poses.position_axes import position_axes
 from odometry.checks.poses.smoothed_poses import smoothed_poses
+from odometry.checks.poses.ticking_poses import ticking_poses
 from odometry.checks.poses.yaw_drift import yaw_drifts
 from odometry.checks.settings.settings import columns, settings
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
@@ -119,6 +120,7 @@ CHECKS: tuple[Check, ...] = (
     slightly_late,
     late_positions,
     poses,
+    ticking_poses,
     gyroscope,
     headings_wander,
     gyroscope_scale,

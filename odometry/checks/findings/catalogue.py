@@ -107,6 +107,7 @@ CATALOGUE: dict[str, str] = {
     "pose_bursts": "stamps of arrival of the poses, in bursts",
     "pose_outage": "no poses for a while",
     "frozen_poses": "a reference that was lost",
+    "ticking_poses": "positions that jump at a regular beat",
     "pose_jumps": "positions that jump and stay",
     "pose_outliers": "positions that go out and come back",
     "slip_episodes": "treads that drive on while the poses stay",

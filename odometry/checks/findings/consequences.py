@@ -66,6 +66,10 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
         | {"gyroscope_bias"}
     ),
+    "ticking_poses": frozenset(
+        {"pose_jumps", "pose_outliers", "treads_unsigned", "noisy_positions"}
+    )
+    | {"positions_stretched"},
     "coarse_positions": frozenset({"repeated_poses", "noisy_positions"}),
     "noisy_positions": frozenset({"pose_late", "pose_jumps", "clocks_apart", "slip"})
     | YAW
