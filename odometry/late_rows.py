@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.row_values import are_of_one_sensor
 from odometry.table import Table
 
@@ -75,6 +75,11 @@ class LateRows(NamedTuple):
         """Whether what was cut off the stamps explains nearly all of it."""
         return float(np.quantile(self.late_s, NEARLY_ALL)) < LATER * self.step_s
 
+    @property
+    def at_once(self) -> IntArray:
+        """How many rows have each of the stamps (S,) of the file."""
+        return np.unique(self.rows.stamps_s, return_counts=True)[1]
+
     def at(self, stamps_s: FloatArray) -> Table:
         """The rows at other stamps (N,)."""
         return replace(self.rows, columns={**self.rows.columns, "t": stamps_s})
@@ -132,11 +137,6 @@ def _coarse_step_s(stamps_s: FloatArray, period_s: float) -> float:
         if step_s > SHARED * period_s and off_s.max() < OFF * step_s + ROUNDING_S:
             return step_s
     return 0.0
-
-
-def most_at_once(late: LateRows) -> int:
-    """The most rows that have one stamp."""
-    return int(np.unique(late.rows.stamps_s, return_counts=True)[1].max())
 
 
 def even_stamps_s(stamps_s: FloatArray, period_s: float) -> FloatArray:

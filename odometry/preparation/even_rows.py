@@ -6,7 +6,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.timing import TOGETHER, lags_of
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
-from odometry.late_rows import NEARLY_ALL, LateRows, late_rows, most_at_once
+from odometry.late_rows import NEARLY_ALL, LateRows, late_rows
 from odometry.preparation.row_rates import EARLY_S
 from odometry.run import Run, with_stamps, with_table
 
@@ -55,7 +55,7 @@ def _event(file: str, rows: LateRows, of_all_s: float) -> FilterEvent:
     begin_s, end_s = rows.rows.stamps_s[[0, -1]].tolist()
     left = f", {of_all_s:.2g} s by the yaw of poses, was undone" if of_all_s else " is not known"
     stamps = (
-        f"stamps in steps of {rows.step_s:g} s, which {most_at_once(rows)} rows share at most: "
+        f"stamps in steps of {rows.step_s:g} s, which {rows.at_once.max()} rows share at most: "
         if rows.are_coarse
         else f"stamps of arrival, late by {rows.late_s.mean():.2g} s in the mean "
         f"and {rows.late_s.max():.2g} s at most beside even ones: "

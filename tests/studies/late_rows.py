@@ -150,7 +150,8 @@ def errors(run, true):
     result = run_odometry(run, vision=False)
     reference = reference_path(true)
     travel_m = wheel_travel_m(true, reference.stamps_s)
-    withheld = ~np.isfinite(result.second.withheld.run.pose["x"])
+    pose = result.second.withheld.run.pose
+    withheld = np.isin(true.pose.lines, pose.lines[~np.isfinite(pose["x"])])
     used = np.isin(reference.stamps_s, true.pose.stamps_s[withheld])
     found = []
     for path, chosen in (

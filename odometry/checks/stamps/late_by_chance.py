@@ -6,19 +6,21 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.stamps.bursts import TWO_OF_EACH
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
-from odometry.late_rows import NEARLY_ALL, LateRows, late_rows, most_at_once
+from odometry.late_rows import NEARLY_ALL, LateRows, late_rows
 from odometry.run import Run, with_table
 from odometry.windows.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
 WARNED_STEP_S = 0.1  # of coarse stamps: what all rows are off by is no more
+BOTH = 2  # rows of a stamp, that may be those of the two treads
 HELD_UP = 0.5  # of the period, by which a row is late
 FEW = 0.2  # share of the rows: where fewer are late, they were held up now and then
 LAGS = frozenset(
     {"pose_late", "yaw_late", "positions_late", "gyroscope_late", "treads_late", "clocks_apart"}
 )
-ARRIVAL = "Stamps are those of arrival, not of the measurement: "
+ARRIVAL = "stamps are those of arrival, not of the measurement: "
 HANDED_ON = "a serial line, USB, a network or a busy computer hands some rows on later than others"
 STALLED = (
     "the logger, or what sends to it, stalled now and then, and the rows of that time came at once"
@@ -76,19 +78,26 @@ def _finding(file: str, late: LateRows, began_s: float) -> Finding:
         f"late, {100 * late.close.mean():.2g} % of all together with the row before: by "
         f"{late.late_s.mean():.2g} s in the mean and {late.late_s.max():.2g} s at most beside even "
         "stamps",
-        ARRIVAL + (HANDED_ON if many else STALLED),
+        _either(ARRIVAL + (HANDED_ON if many else STALLED), file, late),
         REMEDY,
         () if many else tuple((even_s[a].item(), even_s[b - 1].item()) for a, b in stretches),
     )
+
+
+def _either(cause: str, file: str, late: LateRows) -> str:
+    """The cause, and another one where nearly all stamps have two rows."""
+    if file == "odometry.csv" and np.mean(late.at_once == BOTH) > NEARLY_ALL:
+        return f"Either {cause}{TWO_OF_EACH}"
+    return cause[:1].upper() + cause[1:]
 
 
 def _coarse(file: str, late: LateRows, _: float) -> Finding:
     return Finding(
         "coarse_stamps",
         Level.WARNING if late.step_s > WARNED_STEP_S else Level.NOTE,
-        f"stamps of {file} are multiples of {late.step_s:g} s, and up to {most_at_once(late)} rows "
+        f"stamps of {file} are multiples of {late.step_s:g} s, and up to {late.at_once.max()} rows "
         f"share one; the rows are as many as {1 / late.period_s:.3g} Hz ask for",
-        "The logger writes time in too few digits",
+        _either("the logger writes time in too few digits", file, late),
         "Write stamps with milliseconds; verbs that fit or follow a run take even stamps (`causal` "
         f"and live ones cannot). All of them may be early or late by up to {late.step_s:g} s",
     )

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.checks.stamps.bursts import TWO_OF_EACH
 from odometry.checks.stamps.stamps import tables_of
 from odometry.row_values import are_copies, take_turns
 from odometry.table import Table
@@ -22,7 +23,7 @@ def _finding(name: str, table: Table, dropped: list[int]) -> Finding:
     rows = table.with_repeated()
     few = len(dropped) <= FEW * len(rows)
     copies = are_copies(table)
-    cause, remedy = _cause(few=few, turns=take_turns(rows), of_images=name == "images.csv")
+    cause, remedy = _cause(name, few=few, turns=take_turns(rows))
     if copies:
         cause, remedy = "Rows are written more than once", "Nothing to do: the first ones were used"
     first = ", ".join(map(str, dropped[:3])) + (" ..." if len(dropped) > 3 else "")
@@ -37,7 +38,7 @@ def _finding(name: str, table: Table, dropped: list[int]) -> Finding:
     )
 
 
-def _cause(*, few: bool, turns: bool, of_images: bool) -> tuple[str, str]:
+def _cause(file: str, *, few: bool, turns: bool) -> tuple[str, str]:
     """Cause and remedy where rows of one stamp differ, and are no steady sensor's."""
     if turns:
         return (
@@ -48,12 +49,10 @@ def _cause(*, few: bool, turns: bool, of_images: bool) -> tuple[str, str]:
         )
     if few:
         return "The logger wrote a stamp twice", "Nothing to do"
-    left = (
-        "" if of_images else "; the rows that are left are not of their times, so that delays were "
-        "not judged"
-    )  # fmt: skip
+    others = TWO_OF_EACH * (file == "odometry.csv")
+    left = "; the rows that are left are not of their times, so that delays were not judged"
     return (
         "Stamps have too few digits, or are those of arrival of rows that were sent several at "
-        f"once, or two recordings were merged{left}",
+        f"once, or two recordings were merged{others}" + left * (file != "images.csv"),
         "Write stamps with more digits, or one source alone, and check again",
     )

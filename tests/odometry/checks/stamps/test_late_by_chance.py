@@ -93,6 +93,22 @@ def test_stamps_in_whole_steps_are_the_only_finding(driven, step_s, level, words
     assert (found.name, found.level) == ("coarse_stamps", level)
     assert words in found.seen
     assert "20 Hz" in found.seen
+    assert ("of the messages of either tread" in found.cause) == (step_s == 0.1)
+
+
+def with_a_row_of_each_tread(run):
+    """Of each moment a row in which the left tread is new, and one in which both are."""
+    rows = run.odometry
+    each = np.repeat(np.arange(len(rows)), 2)
+    columns = {name: values[each] for name, values in rows.columns.items()}
+    columns["v_right"][2::2] = rows["v_right"][:-1]
+    return replace(run, odometry=stamped(replace(rows, columns=columns), columns["t"]))
+
+
+def test_two_rows_of_each_moment_may_be_of_either_tread(driven):
+    (found,) = check_recording(with_a_row_of_each_tread(driven)).findings
+    assert found.name == "repeated_stamps"
+    assert "each moment has two rows, of the messages of either tread" in found.cause
 
 
 def test_delays_are_not_judged_where_other_rows_share_stamps_and_were_dropped(driven):
