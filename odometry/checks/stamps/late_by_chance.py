@@ -13,7 +13,7 @@ from odometry.run import Run, with_table
 from odometry.windows.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
-WARNED_STEP_S = 0.1  # of coarse stamps: what all rows are off by is no more
+WARNED_STEP_S = 0.05  # of coarse stamps: what all rows are off by is no more
 BOTH = 2  # rows of a stamp, that may be those of the two treads
 HELD_UP = 0.5  # of the period, by which a row is late
 FEW = 0.2  # share of the rows: where fewer are late, they were held up now and then

@@ -25,7 +25,7 @@ def _finding(name: str, table: Table, dropped: list[int]) -> Finding:
     copies = are_copies(table)
     cause, remedy = _cause(name, few=few, turns=take_turns(rows))
     if copies:
-        cause, remedy = "Rows are written more than once", "Nothing to do: the first ones were used"
+        cause, remedy = "Rows are written twice or more", "Nothing to do: the first ones were used"
     first = ", ".join(map(str, dropped[:3])) + (" ..." if len(dropped) > 3 else "")
     return Finding(
         "repeated_rows" if copies else "repeated_stamps",

@@ -85,7 +85,10 @@ def test_late_rows_that_share_stamps_are_late_ones(driven, digits, seed):
 
 @pytest.mark.parametrize(
     ("step_s", "level", "words"),
-    [(0.1, Level.NOTE, "up to 2 rows share one"), (1.0, Level.WARNING, "up to 20 rows share one")],
+    [
+        (0.1, Level.WARNING, "up to 2 rows share one"),
+        (1.0, Level.WARNING, "up to 20 rows share one"),
+    ],
 )
 def test_stamps_in_whole_steps_are_the_only_finding(driven, step_s, level, words):
     coarse = with_arrival(driven, lambda stamps_s: cut_off(stamps_s, step_s))
@@ -94,6 +97,15 @@ def test_stamps_in_whole_steps_are_the_only_finding(driven, step_s, level, words
     assert words in found.seen
     assert "20 Hz" in found.seen
     assert ("of the messages of either tread" in found.cause) == (step_s == 0.1)
+
+
+def test_steps_that_put_rows_off_by_little_are_a_note(driven):
+    at_s = np.arange(0, driven.odometry.stamps_s[-1], 0.02)
+    rate = np.interp(at_s, driven.odometry.stamps_s, driven.odometry["gyro_z"])
+    imu = stamped(table("imu.csv", t=at_s, gyro_z=rate), cut_off(at_s, 0.05))
+    (found,) = check_recording(replace(driven, imu=imu)).findings
+    assert (found.name, found.level) == ("coarse_stamps", Level.NOTE)
+    assert found.seen.startswith("stamps of imu.csv")
 
 
 def with_a_row_of_each_tread(run):
