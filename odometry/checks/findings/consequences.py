@@ -64,7 +64,7 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
     "yaw_is_course": YAW | {"pose_late", "poses_unrelated", "gyroscope_unit", "yaw_jumps"},
     "poses_are_wheel_odometry": frozenset(
         {"gyroscope_unit", "track_width", "pose_late", "yaw_is_course", "yaw_jumps"}
-        | {"gyroscope_bias"}
+        | {"gyroscope_bias", "ticking_poses"}
     ),
     "ticking_poses": frozenset(
         {"pose_jumps", "pose_outliers", "treads_unsigned", "noisy_positions"}
