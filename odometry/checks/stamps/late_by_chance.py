@@ -10,7 +10,7 @@ from odometry.checks.stamps.bursts import TWO_OF_EACH
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
 from odometry.late_rows import NEARLY_ALL, LateRows, late_rows
 from odometry.run import Run, with_table
-from odometry.windows.spans import runs_of
+from odometry.windows.recorded.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned
 WARNED_STEP_S = 0.05  # of coarse stamps: what all rows are off by is no more
