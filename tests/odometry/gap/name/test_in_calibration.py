@@ -12,7 +12,7 @@ from odometry.gap.config import GapConfig
 from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.in_calibration import _pays, in_calibration, is_new
 from odometry.gap.prepare.scenes import scene_of
-from tests.odometry.gap.test_further import searched
+from tests.odometry.gap.name.test_further import searched
 
 CONFIG = GapConfig()
 LATE = LateByChance()

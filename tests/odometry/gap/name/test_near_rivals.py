@@ -13,7 +13,7 @@ from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.name import near_rivals
 from odometry.gap.name.near_rivals import as_near, undecided
-from tests.odometry.gap.test_equivalent import PIECES, Alone, explained_by, judged
+from tests.odometry.gap.answer.test_equivalent import PIECES, Alone, explained_by, judged
 
 SMOOTH = Residual("speed", (("v_x", 0),), "", (0.0, 1.0))
 
