@@ -32,12 +32,12 @@ from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
 from .live_frames import LiveFrames
 from .models.catalogue import MODELS, model_named
 from .models.inputs import Inputs
-from .modes.followed import followed
+from .modes.follow.followed import followed
+from .modes.follow.track import ModeTrack, follow_modes
 from .modes.identify.identify_traction import identify_traction_modes
 from .modes.identify.identify_velocity import identify_velocity_modes
-from .modes.mode_set import ModeSet
-from .modes.mode_set_file import read_mode_set, write_mode_set
-from .modes.track import ModeTrack, follow_modes
+from .modes.models.mode_set import ModeSet
+from .modes.models.mode_set_file import read_mode_set, write_mode_set
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
 from .pipeline import ConstantTerrain, replay
 from .run import Robot, Run

@@ -15,7 +15,7 @@ from odometry.evaluation.score import reference_of, withhold
 from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.learned_parameters import learned_parameters
-from odometry.modes.mode_set import ModeSet
+from odometry.modes.models.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
 from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.preparation.prepared import prepared_run

@@ -108,6 +108,7 @@ ROOMS_IN_ORDER = {
     "odometry.bags": ("files", "topics", "wheels", "rows"),
     "odometry.feel": ("recorded", "classifier", "assessment", "labels"),
     "odometry.windows": ("recorded", "travel", "dense", "stretches"),
+    "odometry.modes": ("recorded", "models", "identify", "checks", "follow", "show"),
     "odometry.report": ("drawing", "icrs", "comparison", "gap", "modes"),
     "odometry.effects": ("interface", "commands", "motion", "measurement", "unknown"),
     "terrain.cli": ("texts", "verbs"),

@@ -1,6 +1,6 @@
-from .camera_prior import SeenTerrain
-from .detection import detections
-from .mode_set import DWELL_S, UNDETERMINED
+from .follow.camera_prior import SeenTerrain
+from .follow.detection import detections
+from .models.mode_set import DWELL_S, UNDETERMINED
 from .show.files import write_modes
 from .show.words import sentences
 

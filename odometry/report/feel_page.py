@@ -13,7 +13,7 @@ from odometry.feel.labels.felt import SILENT
 from odometry.feel.labels.files import sentences
 from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
-from odometry.modes.mode_set import NONE_OF_THESE
+from odometry.modes.models.mode_set import NONE_OF_THESE
 from odometry.report.drawing.before_use import before_use
 from odometry.report.drawing.figure import mode_colours, save_figure
 from odometry.report.drawing.html import Grid, Listing, Paragraph, Picture, Section, write_page

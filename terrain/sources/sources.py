@@ -8,12 +8,12 @@ from odometry.feel.labels.follow import Felt, follow_feel
 from odometry.feel.labels.live_run import follow_feel_live
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
-from odometry.modes.answers import named_modes
-from odometry.modes.mode_set import NO_MODES, ModeSet
-from odometry.modes.mode_set_file import read_mode_set
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.mode_set import NO_MODES, ModeSet
+from odometry.modes.models.mode_set_file import read_mode_set
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track import follow_modes
-from odometry.modes.velocity import VelocityModes
 from odometry.parameters import ParameterSet
 from odometry.pipeline import ConstantTerrain, TerrainSource
 from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run

@@ -12,8 +12,8 @@ from odometry.errors import OdometryError
 from odometry.estimation.terrain_beliefs import prior_belief
 from odometry.installed import shipped_data
 from odometry.io.tum import read_tum
-from odometry.modes.mode_set_file import read_mode_set, write_mode_set
-from odometry.modes.track import follow_modes
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle

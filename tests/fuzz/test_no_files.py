@@ -8,7 +8,7 @@ from odometry.errors import ConfigError, OdometryError
 from odometry.io.csv_table import read_csv_table
 from odometry.io.structured import read_json, read_toml
 from odometry.io.tum import read_tum
-from odometry.modes.mode_set_file import read_mode_set
+from odometry.modes.models.mode_set_file import read_mode_set
 from odometry.parameters import read_parameters
 from odometry.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle

@@ -19,8 +19,8 @@ import numpy as np
 
 import odometry
 from odometry.errors import OdometryError
-from odometry.modes.answers import refusals
-from odometry.modes.mode_set import DWELL_S, NO_MODES, NONE_OF_THESE, UNDETERMINED
+from odometry.modes.follow.answers import refusals
+from odometry.modes.models.mode_set import DWELL_S, NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.positions.heading import headed
 from tests.blind.modes import any_robot
 

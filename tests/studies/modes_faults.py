@@ -22,11 +22,11 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.modes.answers import candidates, named_modes
+from odometry.modes.follow.answers import candidates, named_modes
+from odometry.modes.follow.track import ModesConfig, follow_modes
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSet
-from odometry.modes.track import ModesConfig, follow_modes
+from odometry.modes.models.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.run import Run
 from tests.blind.modes.faults import NAMED, OWN, make_case, possible
 from tests.blind.modes.more_faults import MORE

@@ -19,13 +19,13 @@ import numpy as np
 from odometry.feel.assessment.scores import class_weights
 from odometry.feel.classifier.table import stratified_folds
 from odometry.feel.identify_feel import identify_feel
-from odometry.modes.answers import named_modes
-from odometry.modes.feel_source import feel_source, with_feel
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.feel_source import feel_source, with_feel
+from odometry.modes.follow.mode_track import ModeTrack
+from odometry.modes.follow.track import follow_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
-from odometry.modes.mode_track import ModeTrack
+from odometry.modes.models.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track import follow_modes
 from odometry.run import Run
 from tests.odometry.feel.feel_drives import drive
 

@@ -19,13 +19,13 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
-from odometry.modes.bank_inputs import Signals
-from odometry.modes.detection import confusion
+from odometry.modes.follow.detection import confusion
+from odometry.modes.follow.track import ModesConfig, ModeTrack, follow_modes, follow_signals
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, NO_MODES, ModeSet
-from odometry.modes.track import ModesConfig, ModeTrack, follow_modes, follow_signals
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.models.mode_set import DWELL_S, NO_MODES, ModeSet
+from odometry.modes.models.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 from odometry.run import Run
 from odometry.table import Table
 

@@ -27,12 +27,12 @@ import numpy as np
 from joblib import Parallel, delayed
 from tqdm import tqdm
 
-from odometry.modes.answers import named_modes
-from odometry.modes.detection import detections, false_switches
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.detection import detections, false_switches
+from odometry.modes.follow.track import ModesConfig, ModeTrack, follow_modes
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
-from odometry.modes.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet
-from odometry.modes.track import ModesConfig, ModeTrack, follow_modes
+from odometry.modes.models.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet
 from odometry.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact
 from odometry.simulation.contact.traction import Traction

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OutputError
-from odometry.modes.mode_set_file import read_mode_set
+from odometry.modes.models.mode_set_file import read_mode_set
 from odometry.outputs.output_file import claim_file, is_set_of
 from odometry.outputs.output_folder import claim_folder
 from odometry.outputs.provenance import Made

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
-from odometry.modes.innovation_test import windowed
+from odometry.modes.models.innovation_test import windowed
+from odometry.modes.models.traction import TractionModes
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.traction import TractionModes
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 WINDOW_S = 16.0
 TOLERANCE = 0.01  # of the yaw rate: no mode is identified better

@@ -8,12 +8,12 @@ measured (`centre_spread`, `centre_noise`).
 import numpy as np
 
 from odometry.arrays import BoolArray, IntArray
-from odometry.modes.bank_inputs import Signals
-from odometry.modes.measured_steps import EVERY_S, LEAST_STEPS, step_windows
+from odometry.modes.models.traction import TractionModes, twists_of
+from odometry.modes.models.turning_centres import centres, mean_centre_m, predicted_steps
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.pose_steps import pose_steps
-from odometry.modes.traction import TractionModes, twists_of
-from odometry.modes.turning_centres import centres, mean_centre_m, predicted_steps
+from odometry.modes.recorded.bank_inputs import Signals
+from odometry.modes.recorded.measured_steps import EVERY_S, LEAST_STEPS, step_windows
+from odometry.modes.recorded.pose_steps import pose_steps
 
 # Chosen in development (tests/studies/modes.md): windows of 4 s as well cost clean runs a point.
 WINDOWS_S = (8.0, 16.0)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.identify.held_out_gains import WINDOW_S, gain_sums
+from odometry.modes.models.traction import TractionModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.traction import TractionModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 # Chosen with `gain_sigmas` of `ModesConfig` on eight worlds of a generator in planar motion and on
 # husky_wheels of seeds 85 to 87 (tests/studies/modes.md): windows of 8 s as well bring nothing.

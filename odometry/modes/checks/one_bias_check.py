@@ -10,11 +10,11 @@ which the gain of the mode is off.
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.between_modes import normal_sums, share_of
 from odometry.modes.checks.turn_gain_check import ways_to_next
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 # Chosen with `one_bias_sigmas` of `ModesConfig` on robots of any pace (tests/studies/modes.md).
 WINDOW_S = 60.0  # turns to both sides lie in it

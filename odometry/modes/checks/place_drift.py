@@ -8,7 +8,7 @@ seconds to contradict a mode, and moves the robot in a turn as another set of wh
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.modes.innovation_test import LONG_CLIP, Innovations, windowed
+from odometry.modes.models.innovation_test import LONG_CLIP, Innovations, windowed
 from odometry.modes.modes_config import ModesConfig
 
 PLACE = slice(0, 2)  # x and y among what traction modes measure

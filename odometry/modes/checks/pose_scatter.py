@@ -8,7 +8,7 @@ the one before.
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.modes.innovation_test import Innovations
+from odometry.modes.models.innovation_test import Innovations
 
 WINDOW_S, EVERY_S = 10.0, 1.0
 LEAST_POSES = 10  # of a window

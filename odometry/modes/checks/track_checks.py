@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.between_modes import between_modes
 from odometry.modes.checks.centre_check import centre_check
 from odometry.modes.checks.gain_check import gain_check
@@ -16,17 +15,18 @@ from odometry.modes.checks.travel_check import travel_check
 from odometry.modes.checks.turn_agreement import turns_disagree
 from odometry.modes.checks.turn_gain_check import turn_gain_check
 from odometry.modes.checks.turning_point_check import turning_point_check
-from odometry.modes.innovation_test import (
+from odometry.modes.models.innovation_test import (
     LONG_CLIP,
     LONG_WINDOW_S,
     WINDOW_S,
     Innovations,
     windowed,
 )
-from odometry.modes.mode_set import DWELL_S, ModeSet
+from odometry.modes.models.mode_set import DWELL_S, ModeSet
+from odometry.modes.models.response import BLOCK_S
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.response import BLOCK_S
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 WINDOWS_S = (6.0, 12.0)
 CLIP = 3.0  # of one innovation

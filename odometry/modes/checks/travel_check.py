@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.modes.bank_inputs import Signals
-from odometry.modes.measured_steps import MeasuredTravel, StepWindows, during, step_windows
+from odometry.modes.models.response import SLOWEST_HZ, lagged
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.response import SLOWEST_HZ, lagged
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
+from odometry.modes.recorded.measured_steps import MeasuredTravel, StepWindows, during, step_windows
 
 WINDOWS_S = (5.0, 10.0)
 TOLERANCE = 0.01  # of the distance: no mode is identified better

@@ -8,10 +8,10 @@ its neighbour differ by over the same drive, the gyroscope does not say which of
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
-from odometry.modes.measured_steps import MeasuredTurn, StepWindows, during, step_windows
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
+from odometry.modes.recorded.measured_steps import MeasuredTurn, StepWindows, during, step_windows
 
 WINDOWS_S = (5.0, 10.0, 20.0, 40.0, 80.0)  # in the long ones slow robots turn as well
 GYROSCOPE_RAD = 0.01  # by which a gyroscope is off in a window for other reasons

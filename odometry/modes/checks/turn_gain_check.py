@@ -9,13 +9,13 @@ identified from, `identify-modes` has measured (`turn_spread`, `turn_power`).
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.between_modes import LEFT_BIAS_RAD_S
 from odometry.modes.identify.held_out_gains import gain_sums
 from odometry.modes.identify.held_out_turns import TURNED_S, turning_clock
-from odometry.modes.innovation_test import windowed
+from odometry.modes.models.innovation_test import windowed
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 TOLERANCE = 0.01  # as a share: no gain is identified better
 # Of the way to the next mode: what is nearer to a mode moves the robot nearly as it does.

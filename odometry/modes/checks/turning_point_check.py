@@ -7,9 +7,9 @@ or less. It also moves the point about which the robot turns, farther than terra
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.modes.bank_inputs import Signals
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import Signals
 
 TOLERANCE = 0.03  # of the track width: no point is identified better
 HOLDS_S = 16.0  # what a window says, where no later one turns enough to say

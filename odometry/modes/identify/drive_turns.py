@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.modes.bank_inputs import velocity_signals
 from odometry.modes.identify.mode_windows import stretches_by_label
+from odometry.modes.recorded.bank_inputs import velocity_signals
 from odometry.run import UNKNOWN, Run
 
 BLOCK_S = 1.0  # of means: a lag of the yaw rate matters little

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import FloatArray
-from odometry.modes.response import (
+from odometry.modes.models.response import (
     LEAST_VARIANCE,
     Record,
     Response,

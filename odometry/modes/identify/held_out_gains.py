@@ -6,10 +6,10 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import BoolArray, FloatArray
-from odometry.modes.innovation_test import windowed
-from odometry.modes.response import lagged
-from odometry.modes.traction import RIGHT_TURN, TractionModes, requested, turns_of
-from odometry.modes.yaw_rate_noise import YawRateStretch
+from odometry.modes.models.innovation_test import windowed
+from odometry.modes.models.response import lagged
+from odometry.modes.models.traction import RIGHT_TURN, TractionModes, requested, turns_of
+from odometry.modes.models.yaw_rate_noise import YawRateStretch
 
 WINDOW_S = 4.0  # as long as a turn
 LEAST_RAD_S = 0.05  # predicted: less is no turn

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.identify.held_out_centres import OUT
 from odometry.modes.identify.held_out_gains import LEAST_RAD_S, PARTS, gain_sums, spread_and_power
-from odometry.modes.response import Record, Response, gains_at, simulated
+from odometry.modes.models.response import Record, Response, gains_at, simulated
 
 # Of turning, the straights between turns left out: the first as long as a short turn, the second
 # as a long one. Chosen in development (tests/studies/modes.md).

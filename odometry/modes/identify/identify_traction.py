@@ -14,9 +14,9 @@ from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.identify.held_out_centres import centre_errors
 from odometry.modes.identify.held_out_gains import gain_errors
 from odometry.modes.identify.mode_windows import inside, scenes_by_mode, yaw_rates_by_mode
-from odometry.modes.response import SHORTEST_LAG_S, lagged
-from odometry.modes.traction import TractionModes, requested, turns_of, twists_of
-from odometry.modes.yaw_rate_noise import (
+from odometry.modes.models.response import SHORTEST_LAG_S, lagged
+from odometry.modes.models.traction import TractionModes, requested, turns_of, twists_of
+from odometry.modes.models.yaw_rate_noise import (
     LASTING_S,
     YawRateNoise,
     YawRateStretch,

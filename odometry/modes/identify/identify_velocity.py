@@ -9,21 +9,25 @@ from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.identification.identify import robot_of
 from odometry.independent_runs import check_no_run_twice
-from odometry.modes.bank_inputs import BIAS_SIGMA_RAD_S, forward_speed_m_s, velocity_signals
 from odometry.modes.identify.gain_spread import gain_spread
 from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.identify.travel_power import travel_power
 from odometry.modes.identify.turn_excitation import LEAST_EXCITATION, turn_excitation
 from odometry.modes.identify.turning_range import turning_range
-from odometry.modes.response import (
+from odometry.modes.models.response import (
     Record,
     Response,
     errors_of,
     fitted_response,
     without_biases,
 )
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.models.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import (
+    BIAS_SIGMA_RAD_S,
+    forward_speed_m_s,
+    velocity_signals,
+)
 from odometry.run import UNKNOWN, Run
 
 LEAST_S = 10.0  # of a terrain

@@ -7,9 +7,9 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, IntArray
 from odometry.errors import IdentificationError, WindowError
-from odometry.modes.bank_inputs import NO_YAW, STANDING_M_S
-from odometry.modes.traction import LEFT_TURN, RIGHT_TURN, turns_of
-from odometry.modes.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
+from odometry.modes.models.traction import LEFT_TURN, RIGHT_TURN, turns_of
+from odometry.modes.models.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
+from odometry.modes.recorded.bank_inputs import NO_YAW, STANDING_M_S
 from odometry.run import UNKNOWN, Run
 from odometry.run_terrains import row_terrains
 from odometry.windows.dense.dense import DenseWindows, dense_windows_of, thinned

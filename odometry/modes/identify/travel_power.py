@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from odometry.arrays import FloatArray
-from odometry.modes.response import Record, Response, block_means, left_of
+from odometry.modes.models.response import Record, Response, block_means, left_of
 
 BLOCKS_S = (2.0, 4.0, 8.0, 16.0)
 

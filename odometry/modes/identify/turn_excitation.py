@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.modes.response import Record, block_means
+from odometry.modes.models.response import Record, block_means
 
 BLOCK_S = 1.0  # of means: noise of the treads is no turn
 # As a share of the tread speeds. Made drives straight on or on one circle have 0.001 to 0.008,
@@ -26,7 +26,7 @@ def turn_excitation(records: Sequence[Record]) -> float:
     --------
     >>> import numpy as np
     >>> from odometry.modes.identify.turn_excitation import turn_excitation
-    >>> from odometry.modes.response import Record
+    >>> from odometry.modes.models.response import Record
     >>> circle = np.tile([0.5, 0.4, 0.4, 0.6], (400, 1))
     >>> both_ways = np.where(np.arange(400)[:, None] < 200, circle, circle[:, [0, 1, 3, 2]])
     >>> [round(turn_excitation([Record(0.05, of)]), 3) for of in (circle, both_ways)]

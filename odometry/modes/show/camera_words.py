@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from odometry.modes.followed import Followed
+from odometry.modes.follow.followed import Followed
 
 
 def camera_words(followed: Followed) -> Iterator[str]:

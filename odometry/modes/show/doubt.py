@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.modes.followed import Followed
+from odometry.modes.follow.followed import Followed
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ import numpy as np
 
 from odometry.arrays import BoolArray
 from odometry.modes.checks.between_modes import BetweenModes
-from odometry.modes.followed import Followed
-from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.follow.followed import Followed
+from odometry.modes.models.mode_set import UNDETERMINED
+from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.show.doubt import Doubt, share_of_time, when
 from odometry.modes.show.gain_words import gain_words
 from odometry.modes.show.gyroscope_doubts import of_gyroscope
-from odometry.modes.velocity import VelocityModes
 
 LEAST_DOUBT = 0.1  # of the time: less is not reported
 MOST_SCATTER = 2.0  # times that of identification: other faults of poses and terrains reach 1.5

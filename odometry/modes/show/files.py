@@ -12,11 +12,11 @@ import numpy as np
 from odometry.arrays import AnyArray
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
-from odometry.modes.detection import Detection, confusion
-from odometry.modes.followed import Followed
-from odometry.modes.innovation_test import ModeFit
-from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE
-from odometry.modes.mode_track import ModeTrack
+from odometry.modes.follow.detection import Detection, confusion
+from odometry.modes.follow.followed import Followed
+from odometry.modes.follow.mode_track import ModeTrack
+from odometry.modes.models.innovation_test import ModeFit
+from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE
 from odometry.modes.show.doubts import doubts, not_checked
 from odometry.modes.show.words import answer_words
 from odometry.run import UNKNOWN

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.modes.checks.gain_check import GainCheck
-from odometry.modes.mode_track import ModeTrack
+from odometry.modes.follow.mode_track import ModeTrack
 
 
 def gain_words(track: ModeTrack, gain: GainCheck, gains: FloatArray, rows: BoolArray) -> str:

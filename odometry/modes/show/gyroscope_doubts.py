@@ -3,11 +3,11 @@
 import numpy as np
 
 from odometry.arrays import BoolArray
-from odometry.modes.bank_inputs import yaw_rates_of
-from odometry.modes.followed import Followed
-from odometry.modes.held_rates import held_rates
+from odometry.modes.follow.followed import Followed
+from odometry.modes.models.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import yaw_rates_of
+from odometry.modes.recorded.held_rates import held_rates
 from odometry.modes.show.doubt import Doubt, share_of_time, when
-from odometry.modes.velocity import VelocityModes
 
 
 def of_gyroscope(followed: Followed, undetermined: BoolArray) -> list[Doubt]:

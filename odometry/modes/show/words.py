@@ -4,10 +4,16 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from odometry.modes.detection import Detection, Score
-from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed, Misfit
-from odometry.modes.mode_set import NO_MODES, UNDETERMINED
-from odometry.modes.mode_track import ModeTrack
+from odometry.modes.follow.detection import Detection, Score
+from odometry.modes.follow.followed import (
+    MOTION,
+    MOTION_AND_CAMERA,
+    MOTION_AND_FEEL,
+    Followed,
+    Misfit,
+)
+from odometry.modes.follow.mode_track import ModeTrack
+from odometry.modes.models.mode_set import NO_MODES, UNDETERMINED
 from odometry.modes.show.camera_words import camera_words
 from odometry.modes.show.doubt import Doubt
 from odometry.modes.show.doubts import LEAST_DOUBT, doubts, not_checked

@@ -11,8 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from odometry.arrays import AnyArray
-from odometry.modes.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed
-from odometry.modes.mode_set import NO_MODES
+from odometry.modes.follow.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed
+from odometry.modes.models.mode_set import NO_MODES
 from odometry.report.drawing.figure import mode_colours, save_figure
 from odometry.report.drawing.html import Picture
 from odometry.report.modes.mode_panels import (

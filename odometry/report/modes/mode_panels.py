@@ -10,8 +10,8 @@ from matplotlib.transforms import blended_transform_factory
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.evaluation.stretches import stretches
-from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.modes.track import ModeTrack
+from odometry.modes.follow.track import ModeTrack
+from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.report.drawing.figure import UNKNOWN_TINT, line_styles
 from odometry.run import UNKNOWN
 

@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import CheckReport
-from odometry.modes.detection import confusion
-from odometry.modes.followed import BOUND, Followed
-from odometry.modes.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
+from odometry.modes.follow.detection import confusion
+from odometry.modes.follow.followed import BOUND, Followed
+from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
 from odometry.modes.show.words import SIGNALS, in_short, percent, scale_word, sentences, signal_of
 from odometry.report.drawing.before_use import before_use
 from odometry.report.drawing.figure import save_figure

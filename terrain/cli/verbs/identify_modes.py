@@ -13,9 +13,9 @@ from terrain.cli.results import print_table
 from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
-    from odometry.modes.mode_pairs import Pair
-    from odometry.modes.traction import TractionModes
-    from odometry.modes.velocity import VelocityModes
+    from odometry.modes.models.mode_pairs import Pair
+    from odometry.modes.models.traction import TractionModes
+    from odometry.modes.models.velocity import VelocityModes
     from odometry.run_span import Span
 
 ALIKE_S = 5.0  # pairs that take longer to be distinguished are named
@@ -88,10 +88,10 @@ def identify_modes(
     )
     from odometry.modes.identify.identify_traction import identify_traction_modes
     from odometry.modes.identify.identify_velocity import identify_velocity_modes
-    from odometry.modes.mode_pairs import pairs
-    from odometry.modes.mode_set import ModeSet
-    from odometry.modes.mode_set_file import write_mode_set
-    from odometry.modes.traction import TractionModes
+    from odometry.modes.models.mode_pairs import pairs
+    from odometry.modes.models.mode_set import ModeSet
+    from odometry.modes.models.mode_set_file import write_mode_set
+    from odometry.modes.models.traction import TractionModes
     from odometry.outputs.output_file import is_set_of
     from terrain.cli.outputs import claim_file, comment
     from terrain.cli.recordings import read_runs, with_turns, with_yaw_rates
@@ -170,7 +170,7 @@ def _print_traction(modes: "TractionModes", unknown: Collection[str]) -> None:
     """
     import numpy as np
 
-    from odometry.modes.traction import requested, twists_of
+    from odometry.modes.models.traction import requested, twists_of
 
     click.echo(
         "Share k of the requested speed, shares m of the requested turn rate in wide and in tight "

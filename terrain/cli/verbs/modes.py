@@ -13,9 +13,9 @@ from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
     from odometry.feel.model import FeelModel
-    from odometry.modes.followed import Followed
-    from odometry.modes.mode_set import ModeSet
-    from odometry.modes.track import ModesConfig
+    from odometry.modes.follow.followed import Followed
+    from odometry.modes.follow.track import ModesConfig
+    from odometry.modes.models.mode_set import ModeSet
     from odometry.outputs.output_folder import OutputFolder
     from odometry.run_span import Span
 
@@ -79,8 +79,8 @@ def modes(
       terrain-odometry modes my_run --models set.toml --feel my_robot.feel --out modes
     """
     from odometry.feel.model_file import read_feel_model
-    from odometry.modes.mode_set_file import read_mode_set
-    from odometry.modes.track import ModesConfig
+    from odometry.modes.follow.track import ModesConfig
+    from odometry.modes.models.mode_set_file import read_mode_set
     from terrain.cli.outputs import claim_folder
 
     if seen is not None and len(folders) > 1:
@@ -173,9 +173,9 @@ def _followed(
     feel: "FeelModel | None",
     span: "Span",
 ) -> "Followed":
-    from odometry.modes.camera_prior import seen_terrains
-    from odometry.modes.followed import followed
-    from odometry.modes.velocity import VelocityModes
+    from odometry.modes.follow.camera_prior import seen_terrains
+    from odometry.modes.follow.followed import followed
+    from odometry.modes.models.velocity import VelocityModes
     from terrain.cli.recordings import read_runs, with_turns, with_yaw_rates
 
     usable = with_yaw_rates if isinstance(mode_set.modes, VelocityModes) else with_turns

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.modes.mode_set import ModeSet
-from odometry.modes.mode_set_file import MODE
-from odometry.modes.track import ModeTrack
-from odometry.modes.traction import TractionModes
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.follow.track import ModeTrack
+from odometry.modes.models.mode_set import ModeSet
+from odometry.modes.models.mode_set_file import MODE
+from odometry.modes.models.traction import TractionModes
+from odometry.modes.models.velocity import VelocityModes
 from odometry.run import Robot, Run
 from odometry.table import Table
 

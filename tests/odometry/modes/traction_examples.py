@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from odometry.modes.traction import TractionModes
+from odometry.modes.models.traction import TractionModes
 
 WIDTH = 0.5
 LAGS_S = np.array([0.0, 0.08, 0.3])

@@ -6,8 +6,8 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from odometry.io.run_folder import write_run_folder
-from odometry.modes.mode_pairs import Pair
-from odometry.modes.mode_set_file import read_mode_set
+from odometry.modes.models.mode_pairs import Pair
+from odometry.modes.models.mode_set_file import read_mode_set
 from terrain.cli.verbs.identify_modes import _print_alike, identify_modes
 from tests.odometry.modes.mode_drives import asked_twists
 from tests.odometry.modes.mode_examples import positions_that_determine_no_yaw, run_of

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 import odometry
 from odometry.errors import ParameterError, RunFolderError
 from odometry.io.run_folder import write_run_folder
-from odometry.modes.mode_set_file import write_mode_set
+from odometry.modes.models.mode_set_file import write_mode_set
 from terrain.cli.verbs.modes import modes
 from tests.odometry.arrivals import by_chance
 from tests.odometry.modes.mode_examples import (

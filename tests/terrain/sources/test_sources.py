@@ -18,7 +18,7 @@ from terrain.report.page import write_report
 from terrain.results import write_results
 from terrain.sources.sources import SOURCES, source_name
 from tests.odometry.modes.mode_drives import velocity_run
-from tests.odometry.modes.test_terrain_source import NAMES, SET, A, B
+from tests.odometry.modes.models.test_terrain_source import NAMES, SET, A, B
 
 
 @pytest.fixture(scope="module")

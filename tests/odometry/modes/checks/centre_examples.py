@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.modes.response import lagged
+from odometry.modes.models.response import lagged
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.modes.mode_examples import traction_set

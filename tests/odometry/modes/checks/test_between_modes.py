@@ -5,14 +5,14 @@ import csv
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
 from odometry.modes.checks.between_modes import WINDOW_S, between_modes
-from odometry.modes.followed import followed
-from odometry.modes.mode_set import NONE_OF_THESE
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.followed import followed
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.mode_set import NONE_OF_THESE
+from odometry.modes.models.traction import LEFT_TURN
 from odometry.modes.show.doubts import doubts
 from odometry.modes.show.files import write_modes
-from odometry.modes.track import follow_modes
-from odometry.modes.traction import LEFT_TURN
 from tests.odometry.modes.mode_examples import run_of, traction_set, velocity_set
 
 SIZE = 2500  # 50 s at 50 Hz

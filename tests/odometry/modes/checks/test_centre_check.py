@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
 from odometry.modes.checks.centre_check import centre_check
-from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.mode_set_file import read_mode_set, write_mode_set
-from odometry.modes.track import follow_modes
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.mode_set import UNDETERMINED
+from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
 from tests.odometry.modes.checks.centre_examples import centre_run, centre_set
 
 CHANGES = np.where(np.arange(2000) < 1000, 0.12, 0.0)  # ahead, up to 20 s

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
 from odometry.modes.checks.gain_check import GainCheck, gain_check
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.track import follow_modes
 from odometry.modes.identify.held_out_gains import CLIP_RAD_S
-from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.mode_set_file import read_mode_set, write_mode_set
+from odometry.modes.models.mode_set import UNDETERMINED
+from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.show.gain_words import gain_words
-from odometry.modes.track import follow_modes
 from tests.odometry.modes.mode_examples import run_of, track, traction_set
 
 SIZE = 1500  # 30 s at 50 Hz

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.one_bias_check import BEFORE_S, LEAST_WAY, WINDOW_S, one_bias_check
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.track import follow_signals
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track import follow_signals
+from odometry.modes.recorded.bank_inputs import Signals
 from tests.odometry.modes.mode_examples import velocity_set
 
 STEP_S, SIZE = 0.1, 2000

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.modes.checks.place_drift import PART_S, PARTS, place_drifts
-from odometry.modes.innovation_test import Innovations
-from odometry.modes.track import follow_modes
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.innovation_test import Innovations
 from tests.odometry.modes.mode_examples import run_of, traction_set
 
 STEP_S, SIZE = 0.1, 400

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from odometry.modes.checks.pose_scatter import LEAST_POSES, WINDOW_S, pose_scatter
-from odometry.modes.innovation_test import Innovations
+from odometry.modes.follow.track import follow_modes
+from odometry.modes.models.innovation_test import Innovations
 from odometry.modes.show.doubts import MOST_SCATTER
-from odometry.modes.track import follow_modes
 from tests.odometry.modes.mode_examples import run_of, traction_set
 
 SIZE = 600  # at 20 Hz, with a pose at every fourth stamp

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
 from odometry.modes.checks.travel_check import WINDOWS_S, TravelCheck, travel_check
+from odometry.modes.follow.answers import named_modes
 from odometry.modes.identify.gain_spread import growing_power
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
-from odometry.modes.measured_steps import measured_travel
-from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
-from odometry.modes.response import Record, Response
+from odometry.modes.models.mode_set import NONE_OF_THESE, UNDETERMINED
+from odometry.modes.models.response import Record, Response
+from odometry.modes.recorded.measured_steps import measured_travel
 from odometry.run import Robot, Run
 from odometry.table import Table
 from tests.odometry.modes.mode_examples import track, velocity_set

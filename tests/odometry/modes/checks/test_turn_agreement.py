@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.geometry.angles import wrap
-from odometry.modes.answers import named_modes
 from odometry.modes.checks.turn_agreement import HOLDS_S, WINDOWS_S, turns_disagree
-from odometry.modes.measured_steps import LATE_S, during, measured_turn, step_windows
-from odometry.modes.mode_set import UNDETERMINED
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.models.mode_set import UNDETERMINED
+from odometry.modes.recorded.measured_steps import LATE_S, during, measured_turn, step_windows
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 SIZE, TURN = 1500, 1.6

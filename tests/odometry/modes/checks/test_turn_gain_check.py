@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.answers import named_modes
-from odometry.modes.bank_inputs import Signals
 from odometry.modes.checks.turn_gain_check import turn_gain_check
+from odometry.modes.follow.answers import named_modes
+from odometry.modes.follow.track import follow_signals
 from odometry.modes.identify.held_out_turns import TURNED_S
-from odometry.modes.mode_set import UNDETERMINED
-from odometry.modes.mode_set_file import read_mode_set, write_mode_set
+from odometry.modes.models.mode_set import UNDETERMINED
+from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.track import follow_signals
+from odometry.modes.recorded.bank_inputs import Signals
 from tests.odometry.modes.mode_examples import velocity_set
 
 STEP_S, SIZE = 0.02, 1500

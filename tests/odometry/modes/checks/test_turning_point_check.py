@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.bank_inputs import velocity_signals
 from odometry.modes.checks.turning_point_check import HOLDS_S, turning_point_check
+from odometry.modes.follow.track import follow_modes
 from odometry.modes.identify.turning_range import turning_range
-from odometry.modes.mode_set import DWELL_S, ModeSet
-from odometry.modes.mode_set_file import read_mode_set, write_mode_set
-from odometry.modes.track import follow_modes
-from odometry.modes.turning_points import WINDOW_S, turning_points
-from odometry.modes.velocity import VelocityModes
+from odometry.modes.models.mode_set import DWELL_S, ModeSet
+from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
+from odometry.modes.models.velocity import VelocityModes
+from odometry.modes.recorded.bank_inputs import velocity_signals
+from odometry.modes.recorded.turning_points import WINDOW_S, turning_points
 from odometry.windows.recorded.measured_poses import YAW_FOUND
 from tests.odometry.modes.mode_drives import ROBOT, run_of_tables, table
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.modes.identify.held_out_gains import gain_errors
-from odometry.modes.yaw_rate_noise import YawRateStretch
+from odometry.modes.models.yaw_rate_noise import YawRateStretch
 from tests.odometry.modes.mode_examples import traction_set
 
 STEP_S, WIDTH, SIZE = 0.02, 0.5, 6000

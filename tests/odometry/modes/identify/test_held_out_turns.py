@@ -8,7 +8,7 @@ import pytest
 
 from odometry.modes.identify.held_out_turns import TURNED_S, turn_errors
 from odometry.modes.identify.identify_velocity import OMEGA, identify_velocity_modes
-from odometry.modes.response import Record, Response, fitted_response, simulated
+from odometry.modes.models.response import Record, Response, fitted_response, simulated
 from tests.odometry.modes.mode_examples import run_of
 
 STEP_S, SIZE, RATE_HZ = 0.02, 6000, 8.0

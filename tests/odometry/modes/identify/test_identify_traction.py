@@ -6,7 +6,7 @@ import pytest
 from odometry.errors import IdentificationError, WindowError
 from odometry.modes.identify.identify_traction import fitted, identify_traction_modes
 from odometry.modes.identify.mode_windows import MOST_POSES, scenes_by_mode, yaw_rates_by_mode
-from odometry.modes.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
+from odometry.modes.models.yaw_rate_noise import LASTING_S, NOT_MEASURED, YawRateNoise
 from odometry.windows.dense.dense_noise import Noise
 from tests.odometry.modes.mode_drives import (
     ROBOT,

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.modes.identify.gain_spread import growing_power
 from odometry.modes.identify.travel_power import travel_power
-from odometry.modes.response import Record, Response
+from odometry.modes.models.response import Record, Response
 
 STEP_S, SIZE = 0.1, 20000
 EXACT = Response(10.0, np.array([0.0, 5.0, 5.0]))

@@ -7,9 +7,9 @@ import pytest
 
 from odometry.modes.checks.gain_check import GainCheck
 from odometry.modes.checks.travel_check import TravelCheck
-from odometry.modes.followed import Followed
-from odometry.modes.gyroscope_bias import GyroscopeTrust
-from odometry.modes.mode_set import NONE_OF_THESE, UNDETERMINED
+from odometry.modes.follow.followed import Followed
+from odometry.modes.follow.gyroscope_bias import GyroscopeTrust
+from odometry.modes.models.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.show.doubts import doubts
 from odometry.modes.show.files import content_of

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.modes.followed import Followed
-from odometry.modes.innovation_test import ModeFit
+from odometry.modes.follow.followed import Followed
+from odometry.modes.follow.track import ModesConfig
+from odometry.modes.models.innovation_test import ModeFit
 from odometry.modes.show.words import in_short
-from odometry.modes.track import ModesConfig
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
 
 

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from odometry.modes.camera_prior import SeenTerrain
-from odometry.modes.followed import followed
-from odometry.modes.mode_set import NONE_OF_THESE
+from odometry.modes.follow.camera_prior import SeenTerrain
+from odometry.modes.follow.followed import followed
+from odometry.modes.models.mode_set import NONE_OF_THESE
 from odometry.modes.show.files import content_of
 from odometry.modes.show.words import in_short, percent, scale_word, sentences
 from tests.odometry.modes.mode_examples import run_of, velocity_set

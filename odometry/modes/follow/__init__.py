@@ -1,0 +1,1 @@
+"""The filters that follow modes along a run, and the answers by their probabilities."""

@@ -1,0 +1,1 @@
+"""What recordings say of motion: inputs of the filters, steps and headings of poses."""
