@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from odometry.arrays import BoolArray, FloatArray
+from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.simulate import residuals
@@ -35,6 +35,8 @@ class Jumps:
         By which each of these steps is off the treads.
     sigmas : (J,)
         The same in standard deviations of noise, beyond what a robot may do.
+    ends : (J, 2)
+        First and last pose of each of these steps.
     steps : int
         How many steps there are.
     """
@@ -43,6 +45,7 @@ class Jumps:
     stamps_s: FloatArray
     distances_m: FloatArray
     sigmas: FloatArray
+    ends: IntArray
     steps: int
 
 
@@ -50,7 +53,6 @@ def jumps(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> J
     """Steps that no robot makes, of a run as the calibration drives it."""
     steps = _steps(scene)
     rows = residuals(calibration.base, (), steps)[:, 0]
-    first, last = steps.windows.T
     along = _along(steps.measured[:, 0, :2] - rows[:, :2], rows[:, :2])
     travel_m = np.diff(np.interp(steps.pose_s, steps.time_s, steps.travel_m)[steps.windows])[:, 0]
     behind = np.clip(along, -travel_m, 0.0)
@@ -60,10 +62,10 @@ def jumps(scene: DenseWindows, calibration: Calibration, config: GapConfig) -> J
     sigma_m = np.sqrt(end_variance(steps, calibration.noise)[:, :2].max(axis=1))
     sigmas = np.minimum(beyond_m, _apart_m(steps)) / sigma_m
     jumped = sigmas > config.outlier_sigmas
-    off = np.zeros(len(scene.pose_s), dtype=np.bool_)
-    for begin, end in zip(first[jumped], last[jumped], strict=True):
+    off, ends = np.zeros(len(scene.pose_s), dtype=np.bool_), steps.windows[jumped]
+    for begin, end in ends:
         off[begin + 1 : end + 1] = True
-    return Jumps(off, scene.pose_s, distances_m[jumped], sigmas[jumped], len(steps))
+    return Jumps(off, scene.pose_s, distances_m[jumped], sigmas[jumped], ends, len(steps))
 
 
 def _apart_m(steps: DenseWindows) -> FloatArray:

@@ -24,6 +24,7 @@ from odometry.gap.prepare.statistic import sure_sum
 from odometry.windows.dense.dense import DenseWindows
 
 PLACES = 2  # numbers of a position
+MOST_UNDONE = 0.5  # share of steps that jump: where more lead to single poses, these are the fault
 
 
 KINDS: tuple[tuple[type[ReferenceOutliers], Callable[..., Isolated]], ...] = (
@@ -66,18 +67,36 @@ def outliers_of(
     """Outliers of the runs; None where the measured have no more of them than the calibration.
 
     By Fisher's exact test; of poses that repeat the last one, else of single ones far off. Else
-    jumps that no robot makes.
+    jumps that no robot makes; where most of these lead to such poses or back from them, the poses.
     """
+    kinds = []
     for kind, find in KINDS:
         found, usual, others = (
             tuple(find(scene, calibration, config) for scene in of)
             for of in (measured, known, held_out)
         )
-        outliers = _more_than_usual(kind, found, usual, others, config)
-        if outliers is not None:
-            return outliers
+        if _more_than_usual(found, usual, config):
+            return _single(kind, found, others)
+        kinds.append((kind, found, others))
     jumped = [_jumps(of, calibration, config) for of in (measured, known, held_out)]
-    return _jumping(jumped[0], jumped[1], jumped[2], config)
+    jumping = _jumping(jumped[0], jumped[1], jumped[2], config)
+    if jumping is None:
+        return None
+    for kind, found, others in kinds:
+        seen = any(one.off.any() for one in found)
+        if seen and _undone((*jumped[0], *jumped[2]), (*found, *others)):
+            return _single(kind, found, others)
+    return jumping
+
+
+def _undone(jumped: Sequence[Jumps], single: Sequence[Isolated]) -> bool:
+    """Whether most steps that jump lead to single poses, or back from them."""
+    led = [
+        bool(pose.off[first : last + 1].any())
+        for one, pose in zip(jumped, single, strict=True)
+        for first, last in one.ends
+    ]
+    return bool(np.mean(led) > MOST_UNDONE)
 
 
 def _jumps(
@@ -128,27 +147,28 @@ def _size_m(distances_m: FloatArray) -> float:
 
 
 def _more_than_usual(
-    kind: type[ReferenceOutliers],
-    found: tuple[Isolated, ...],
-    usual: tuple[Isolated, ...],
-    others: tuple[Isolated, ...],
-    config: GapConfig,
-) -> Outliers | None:
+    found: tuple[Isolated, ...], usual: tuple[Isolated, ...], config: GapConfig
+) -> bool:
     counts = [[int(one.off.sum()), int((~one.off).sum())] for one in (*found, *usual)]
     table = [np.sum(of, axis=0) for of in (counts[: len(found)], counts[len(found) :])]
-    count, rest = map(int, table[0])
     chance = fisher_exact(table, alternative="greater").pvalue
-    if count < config.least_outliers or chance > config.outlier_probability:
-        return None
+    return bool(table[0][0] >= config.least_outliers and chance <= config.outlier_probability)
+
+
+def _single(
+    kind: type[ReferenceOutliers], found: tuple[Isolated, ...], others: tuple[Isolated, ...]
+) -> Outliers:
+    """Such poses of measured and held-out runs, with a name."""
+    count, poses = sum(int(one.off.sum()) for one in found), sum(len(one.off) for one in found)
     distances_m = np.concatenate([one.distances_m[one.off] for one in found])
     squares = np.concatenate([one.sigmas[one.off] for one in found]) ** 2
-    share = binomtest(count, count + rest).proportion_ci(method="wilson")
+    share = binomtest(count, poses).proportion_ci(method="wilson")
     stamps = tuple(tuple(one.stamps_s[one.off].tolist()) for one in found)
     return Outliers(
-        Added(kind(stamps), np.array([count / (count + rest), _size_m(distances_m)])),
+        Added(kind(stamps), np.array([count / poses, _size_m(distances_m)])),
         np.array([share.low, distances_m.min()]),
         np.array([share.high, distances_m.max()]),
-        float(np.sum(squares - PLACES * np.log(count + rest))),
+        float(np.sum(squares - PLACES * np.log(poses))),
         found,
         others,
     )

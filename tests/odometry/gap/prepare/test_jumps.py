@@ -5,7 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.effects.measurement.reference_outliers import JumpingPoses
+from odometry.effects.measurement.reference_outliers import (
+    FrozenPoses,
+    JumpingPoses,
+    ReferenceOutliers,
+)
 from odometry.gap.config import GapConfig
 from odometry.gap.prepare.jumps import jumps
 from odometry.gap.prepare.outliers import closes, outliers_of
@@ -74,6 +78,37 @@ def test_a_chain_that_there_was_stays_cut(jumping, plain, known):
     windows = measured.pose["window"]
     assert windows[400] != windows[401]
     assert (np.diff(windows) >= 0).all()
+
+
+def slowly(run, change, single):
+    """Windows of every tenth pose, of which the single ones are changed."""
+    pose = run.pose.rows(np.arange(0, len(run.pose), 10))
+    columns = {name: column.copy() for name, column in pose.columns.items()}
+    change(columns, single)
+    return dense_windows_of(replace(run, pose=replace(pose, columns=columns)), 4.0)
+
+
+def repeated(columns, single):
+    for name in ("x", "y", "yaw"):
+        columns[name][single] = columns[name][single - 1]
+
+
+def aside(columns, single):
+    columns["y"][single] += 1.5
+
+
+@pytest.mark.parametrize(
+    ("change", "single", "kind"),
+    [(aside, (8, 37, 66), ReferenceOutliers), (repeated, (8, 21, 37, 52, 66), FrozenPoses)],
+)
+def test_steps_to_single_poses_and_back_are_these_poses(plain, known, change, single, kind):
+    """As single poses they may be chance beside so short a calibration."""
+    places = np.array(single)
+    off = slowly(plain.run, change, places)
+    usual = slowly(plain.run, change, places[:0])
+    found = outliers_of([off], [off], [usual], known, CONFIG)
+    assert type(found.named.effect) is kind
+    np.testing.assert_array_equal(np.flatnonzero(found.measured[0].off), places)
 
 
 def test_few_and_as_many_as_usual_are_no_finding(jumping, known):
