@@ -119,7 +119,7 @@ def frozen_steps(running: FloatArray, standing: FloatArray, least: float) -> Boo
     """
     turn = float(np.log(len(running)))
     # States: by the treads, frozen, the jump at its end; from each row to each column.
-    paid = np.array([[0.0, turn, np.inf], [np.inf, 0.0, turn], [0.0, np.inf, np.inf]])
+    paid = np.array([[0.0, turn, np.inf], [np.inf, 0.0, turn], [0.0, turn, np.inf]])
     own = np.stack([running, standing, np.zeros_like(running)], axis=-1)
     cost, came = np.array([0.0, turn, np.inf]), np.zeros((len(own), 3), dtype=np.int64)
     for row, of in enumerate(own):
@@ -138,18 +138,27 @@ def frozen_steps(running: FloatArray, standing: FloatArray, least: float) -> Boo
 def returns(on: BoolArray, poses: FloatArray, reckoned: FloatArray) -> BoolArray:
     """Which steps (S,) are of an event after which poses (S + 1, 3) are where the treads lead.
 
-    None where few events do: on a grid of places each jump leads as far as the grid is wide.
+    None where few events do: on a grid of places each jump leads as far as the grid is wide. All
+    that get nearer where together they do: noise may be a large part of a short one.
     """
     padded = np.concatenate([[False], on, [False]]).astype(np.int8)
     begins, ends = np.flatnonzero(np.diff(padded) == 1), np.flatnonzero(np.diff(padded) == -1)
-    found, back = np.zeros_like(on), []
+    if not len(begins):
+        return np.zeros_like(on)
+    left, farthest = [], []
     for begin, end in zip(begins, ends, strict=True):
         event = slice(begin, min(end + 2, len(poses)))
         moved, led = (se2.between(of[begin], of[event])[:, :2] for of in (poses, reckoned))
         off_m = np.hypot(*(moved - led).T)
-        back.append(off_m[-1] < RETURNED * off_m.max())
-        found[begin:end] = back[-1]
-    return found if back and np.mean(back) > MOST else np.zeros_like(on)
+        left.append(off_m[-1])
+        farthest.append(off_m.max())
+    back = np.array(left) < RETURNED * np.array(farthest)
+    if np.linalg.norm(left) < RETURNED * np.linalg.norm(farthest):
+        back = np.array(left) < np.array(farthest)
+    found = np.zeros_like(on)
+    for begin, end in zip(begins[back], ends[back], strict=True):
+        found[begin:end] = np.mean(back) > MOST
+    return found
 
 
 def every_step(scene: DenseWindows) -> DenseWindows:
