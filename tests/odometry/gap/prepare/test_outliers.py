@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.gap.config import GapConfig
-from odometry.gap.prepare.frozen import frozen_steps, isolated
+from odometry.gap.prepare.frozen import frozen, frozen_steps, isolated
 from odometry.gap.prepare.outliers import closes, outliers_of
 from odometry.gap.prepare.scenes import cleaned_runs, without_outliers
 from odometry.windows.dense.dense import dense_windows_of
@@ -137,6 +137,21 @@ def test_poses_that_repeat_the_last_one_are_found(plain, known, rng, noise_m):
     assert len(found.named.effect.stamps_s[0]) > 0.7 * len(frozen_s)
 
 
+def test_poses_that_repeat_again_as_soon_as_they_caught_up_are_found(plain, known, rng):
+    """Every second pose of some stretches repeats, at steps of a few times their noise."""
+    pose = plain.run.pose.rows(np.arange(0, len(plain.run.pose), 3))
+    repeats = np.concatenate([np.arange(begin, begin + 40, 2) for begin in (20, 110, 200)])
+    columns = {name: of.copy() for name, of in pose.columns.items()}
+    for name in ("x", "y"):
+        columns[name] += 0.02 * rng.normal(size=len(pose))
+    for name in ("x", "y", "yaw"):
+        columns[name][repeats] = columns[name][repeats - 1]
+    run = replace(plain.run, pose=replace(pose, columns=columns))
+    off = np.flatnonzero(frozen(dense_windows_of(run, 4.0), known, CONFIG).off)
+    assert set(off) <= set(repeats)
+    assert len(off) > len(repeats) / 2
+
+
 def test_poses_are_left_out_by_what_that_closes_on_all_runs(plain, known):
     """The reference hangs where nothing is held out: each such pose is off by itself."""
     held = np.arange(len(plain.pose_s))
@@ -174,7 +189,7 @@ def test_a_stretch_held_out_of_which_nothing_is_left_keeps_its_poses(plain, know
 
 def test_of_all_ways_to_freeze_and_jump_the_least_cost_is_found(rng):
     running, standing = rng.uniform(0.0, 30.0, 7), rng.uniform(0.0, 6.0, 7)
-    after = {0: (0, 1), 1: (1, 2), 2: (0,)}
+    after = {0: (0, 1), 1: (1, 2), 2: (0, 1)}
 
     def cost(states):
         if any(new not in after[old] for old, new in zip((0, *states[:-1]), states, strict=True)):
