@@ -131,9 +131,12 @@ def _at_even_stamps(rows: Table, period_s: float) -> LateRows:
 
 
 def _coarse_step_s(stamps_s: FloatArray, period_s: float) -> float:
-    """The step of stamps that are multiples of more than a period; 0 of finer ones."""
+    """The step of stamps that are multiples of more than a period; 0 of finer ones.
+
+    But the first, at which a cut may hold a row.
+    """
     for step_s in STEPS_S:
-        off_s = np.abs(stamps_s - step_s * np.round(stamps_s / step_s))
+        off_s = np.abs(stamps_s - step_s * np.round(stamps_s / step_s))[1:]
         if step_s > SHARED * period_s and off_s.max() < OFF * step_s + ROUNDING_S:
             return step_s
     return 0.0
@@ -150,10 +153,21 @@ def even_stamps_s(stamps_s: FloatArray, period_s: float) -> FloatArray:
 
 
 def _period_s(stamps_s: FloatArray, rows: int) -> float:
-    """The mean of the middle half of the periods over so many rows."""
+    """The mean of the middle half of the periods over so many rows.
+
+    Of coarse stamps also of those up to a step beside: any part of them that the step rounds to one
+    side is biased.
+    """
     periods_s = np.sort(stamps_s[rows:] - stamps_s[:-rows]) / rows
     quarter = len(periods_s) // 4
-    return float(periods_s[quarter : len(periods_s) - quarter].mean())
+    middle_s = periods_s[quarter : len(periods_s) - quarter]
+    found_s = float(middle_s.mean())
+    step_s = _coarse_step_s(stamps_s, found_s)
+    if not step_s:
+        return found_s
+    beside_s = (1 + OFF) * step_s / rows
+    low, high = np.searchsorted(periods_s, [middle_s[0] - beside_s, middle_s[-1] + beside_s])
+    return float(periods_s[low:high].mean())
 
 
 def _is_late_by_chance(stamps_s: FloatArray, found: LateRows, rows: int) -> bool:

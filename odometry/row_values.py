@@ -15,11 +15,21 @@ MOTION = ("v_left", "v_right", "gyro_z", "x", "y", "vx", "vy", "wz")
 # Root mean square of the step to the row before, over that to one of those before it: 1.05 at most
 # in 75 real recordings, 2 and more where two sources take turns.
 BACK, REACH = 1.25, 4
+LIMIT = 0.3  # of the median change of a log of changes, that its smallest ones have at least
 
 
 def are_of_one_sensor(table: Table, close: BoolArray) -> bool:
     """Whether rows, of which some (N,) follow close, may be the readings of a steady sensor."""
-    return not (repeat_values(table, close) or _are_merged(table) or take_turns(table))
+    of_others = _are_merged(table) or take_turns(table) or are_changes(table)
+    return not (of_others or repeat_values(table, close))
+
+
+def are_changes(table: Table) -> bool:
+    """Whether rows were recorded only where a tread speed had changed by more than a limit."""
+    if not {"v_left", "v_right"} <= table.columns.keys():
+        return False
+    changes = np.abs(np.diff(table.stack("v_left", "v_right"), axis=0)).max(axis=1)
+    return bool(np.quantile(changes, 0.02) > LIMIT * np.median(changes))
 
 
 def repeat_values(table: Table, close: BoolArray) -> bool:
@@ -49,7 +59,7 @@ def _changes(column: AnyArray) -> tuple[BoolArray, BoolArray]:
 def are_copies(table: Table) -> bool:
     """Whether the rows of a table that were dropped, as they repeat a stamp, repeat its values."""
     rows = table.with_repeated()
-    return repeat_values(rows, np.diff(rows.stamps_s, prepend=-np.inf) == 0)
+    return repeat_values(rows, np.isin(rows.lines, table.repeated_lines))
 
 
 def take_turns(table: Table) -> bool:

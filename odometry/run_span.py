@@ -82,6 +82,8 @@ def cut_run(run: Run, span: Span) -> Run:
 def _cut_held(table: Table, from_s: float, to_s: float) -> Table:
     """Rows between two stamps; a row holds until the next, so the cuts get rows of their own.
 
+    Not the last of a stamp that rows share: another one of them may be in force.
+
     Parameters
     ----------
     table : Table
@@ -92,7 +94,8 @@ def _cut_held(table: Table, from_s: float, to_s: float) -> Table:
     rows = np.flatnonzero((stamps_s >= from_s) & (stamps_s <= to_s))
     first, last = np.searchsorted(stamps_s, [from_s, to_s], side="right") - 1
     before = [first] if first >= 0 and stamps_s[first] < from_s else []
-    after = [last] if last >= 0 and stamps_s[last] < to_s < stamps_s[-1] else []
+    held_on = last >= 0 and stamps_s[last] < to_s < stamps_s[-1] and not _is_shared(table, last)
+    after = [last] if held_on else []
     held = table.rows(np.array([*before, *rows, *after], dtype=np.int64))
     held_s = np.clip(held.stamps_s, from_s, to_s)
     if after:
@@ -102,6 +105,11 @@ def _cut_held(table: Table, from_s: float, to_s: float) -> Table:
         columns={**held.columns, "t": held_s},
         repeated=table.rows(rows).repeated,
     )
+
+
+def _is_shared(table: Table, row: int) -> bool:
+    repeated = table.repeated
+    return repeated is not None and bool(np.isin(table.stamps_s[row], repeated.stamps_s))
 
 
 def _cut(table: Table, from_s: float, to_s: float) -> Table | None:

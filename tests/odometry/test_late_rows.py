@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.late_rows import SLACK, even_stamps_s, late_rows
+from odometry.run import with_table
+from odometry.run_span import Span, cut_run
 from tests.odometry.arrivals import after_stalls, by_chance, cut_off, stamped
 from tests.odometry.checks.drives import PERIOD_S, table, winding
 
@@ -48,6 +50,17 @@ def test_rows_of_coarse_stamps_are_spread_over_their_steps(rows, step_s, began_s
     assert (late.step_s, late.are_coarse) == (step_s, True)
     assert np.abs(late.even_s - true_s).max() < PERIOD_S + 3 * SLACK * step_s
     assert len(late.even_s) == len(rows)
+
+
+@pytest.mark.parametrize("span", [Span(10.3, 70.7), Span(10.3), Span(0.0, 70.7)])
+def test_rows_of_coarse_stamps_are_spread_in_a_part_of_the_run(span):
+    run = winding()
+    true_s = run.odometry.stamps_s
+    part = cut_run(with_table(run, "odometry", stamped(run.odometry, cut_off(true_s, 1.0))), span)
+    late = late_rows(part.odometry)
+    assert late.are_coarse
+    off_s = late.even_s - true_s[late.rows.lines - 2]
+    assert np.abs(off_s[1:]).max() < 2 * PERIOD_S  # the first is held from before
 
 
 def test_rows_that_are_late_by_more_than_a_step_came_late(rows):
@@ -174,6 +187,33 @@ OTHERS = {
 @pytest.mark.parametrize("log", OTHERS.values(), ids=OTHERS)
 def test_other_logs_have_no_late_rows(rows, log):
     assert late_rows(log(rows)) is None
+
+
+@pytest.fixture(scope="module")
+def longer_rows():
+    """Eight minutes at 20 Hz."""
+    return winding(9600).odometry
+
+
+@pytest.mark.parametrize("step_s", [1e-6, 0.1, 1.0])
+@pytest.mark.parametrize("limit_m_s", [0.04, 0.05])
+def test_logs_of_changes_have_no_late_rows_though_changes_come_evenly(
+    longer_rows, limit_m_s, step_s
+):
+    changed = of_changes(longer_rows, limit_m_s)
+    assert late_rows(stamped(changed, cut_off(changed.stamps_s, step_s))) is None
+
+
+@pytest.mark.parametrize(
+    ("rows_a_second", "share"), [(13.7, 0.0), (43.6, 0.0), (53.2, 0.0), (106.6, 0.0), (50.0, 0.3)]
+)
+def test_no_rate_moves_rows_of_whole_seconds_far_from_theirs(longer_rows, rows_a_second, share):
+    """200 rows last no whole seconds: most of their periods are rounded to one side."""
+    fast = stamped(longer_rows, np.arange(len(longer_rows)) / rows_a_second)
+    few = lost(fast, share)
+    late = late_rows(stamped(few, cut_off(few.stamps_s, 1.0)))
+    assert late.period_s == pytest.approx(1 / rows_a_second / (1 - share), rel=0.01)
+    assert np.abs(late.even_s - few.stamps_s).max() < 1.0 + share
 
 
 def test_a_column_without_numbers_does_not_hide_that_rows_repeat(rows):

@@ -7,10 +7,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
+from odometry.row_values import are_changes
 from odometry.windows.recorded.gaps import odometry_gaps
 
 OFTEN = 20
-LIMIT = 0.3  # of the median change of a log of changes, that its smallest ones have at least
 FEW = 0.3  # share of the long holds that are gaps: where there are fewer, it is a log of changes
 LONG_S, LONG_PERIODS = 1.0, 20.0  # a hold longer than both may be a gap
 MISSED_M = 0.3  # of motion that the held speeds do not have
@@ -30,7 +30,8 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
     lasts_s = np.diff(stamps_s)
     long = np.flatnonzero(lasts_s > max(LONG_S, LONG_PERIODS * evidence.period_s))
     found = odometry_gaps(evidence.run)
-    of_changes = len(found) < FEW * len(long) or (len(long) > OFTEN and _only_changes(evidence))
+    many = len(long) > OFTEN
+    of_changes = len(found) < FEW * len(long) or (many and are_changes(evidence.run.odometry))
     was_set = [_clock_was_set(evidence, span) for span in found.spans_s]
     clock, lost = (
         [span for span, was in zip(found.spans_s, was_set, strict=True) if was is kind]
@@ -59,12 +60,6 @@ def gaps(evidence: Evidence) -> Iterator[Finding]:
             "recording was paused",
             remedy="Cut the recording there with --from and --to",
         )
-
-
-def _only_changes(evidence: Evidence) -> bool:
-    """Whether rows were recorded only where a speed changed by more than a limit."""
-    changes = np.abs(np.diff(evidence.run.odometry.stack("v_left", "v_right"), axis=0)).max(axis=1)
-    return bool(np.quantile(changes, 0.02) > LIMIT * np.median(changes))
 
 
 def _finding(
