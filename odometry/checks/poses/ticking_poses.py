@@ -55,7 +55,7 @@ def ticking_poses(evidence: Evidence) -> Iterator[Finding]:
         Level.WARNING,
         f"positions jump by {float(np.median(beat.sizes_m)):.2g} m in the median, and stay, "
         f"{counted(len(at_s), 'time')} at a beat of {beat.period_s:.2g} s (first at "
-        f"{evidence.run_time_s(at_s[0]):.1f} s), while the treads go on",
+        f"{evidence.run_time_s(at_s[0]):.1f} s), and the treads do not",
         "The reference corrects itself in steps: a receiver or a filter between its fixes, or a "
         "SLAM at its key frames or matches",
         "Record what the reference itself is sure of (its fixes, or the map once it is finished); "

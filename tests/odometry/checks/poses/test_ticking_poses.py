@@ -48,6 +48,15 @@ def test_jumps_at_a_beat_are_named_with_it(driven, change, period_s):
     assert f"at a beat of {period_s:.2g} s" in found.seen
 
 
+def test_treads_of_a_robot_that_stands_are_not_said_to_go_on(driven):
+    at_rest = np.zeros_like(driven.odometry.stamps_s)
+    resting = put(driven, "odometry", v_left=at_rest, v_right=at_rest, gyro_z=at_rest)
+    x, y = 0.01 * np.random.default_rng(0).standard_normal((2, len(driven.pose)))
+    resting = jumping(put(resting, "pose", x=x, y=y, yaw=np.zeros(len(x))))
+    (seen,) = (f.seen for f in check_recording(resting).findings if f.name == "ticking_poses")
+    assert "go on" not in seen
+
+
 def test_small_jumps_are_none(driven):
     assert not check_recording(jumping(driven, 0.03)).findings
 
