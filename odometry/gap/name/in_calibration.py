@@ -18,6 +18,7 @@ from odometry.windows.dense.dense_noise import Noise, whitening
 
 PARTS = (0.25, 0.5, 0.75, 1.0)  # of what the effect may always be: stamps are late, and uneven
 BEST = 2  # stretches of the calibration runs without which it must still pay
+SPOILT = 0.1  # of a gain a row: right names lose 0.03 at most, wrong ones 0.12 and more
 MORE = 2.0  # times as uneven as there: the calibration runs do not have that
 
 
@@ -56,6 +57,24 @@ def is_new(added: Added, calibration: Calibration, config: GapConfig) -> str:
     if sure_sum(whole, BEST) <= config.equivalent_margin or whole.sum() < half.sum():
         return ""
     return "the calibration runs show as much of it: it is not what is missing"
+
+
+def spoils_calibration(
+    added: Added, gain: float, calibration: Calibration, config: GapConfig
+) -> str:
+    """Whether an effect that acts in every drive makes the calibration runs worse.
+
+    By a part of the chi-squared a row, `gain`, that it takes off the measured runs. Calibration
+    runs that are driven more slowly, or on level terrain, say little of it, and lose as little.
+    """
+    known = [scene for _, scene in calibration.held_back]
+    if not known or any(added.effect.lacks(of.inputs, calibration.base) for of in known):
+        return ""
+    rows = sum(len(scene) * scene.rows_per_window for scene in known)
+    lost = -float(_all_gains(added, calibration).sum())
+    if lost <= max(config.equivalent_margin, SPOILT * gain * rows):
+        return ""
+    return "it would act in the calibration runs as well, and these do not show it"
 
 
 def _share_of(added: Added, share: float) -> Added:

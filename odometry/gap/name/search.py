@@ -17,11 +17,8 @@ from odometry.gap.name.candidates import contact_effects, of_the_same_robot
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form_gates import is_resolved, is_unbeaten
 from odometry.gap.name.general import general_candidates, single_candidates
-from odometry.gap.name.verdict import (
-    Refusal,
-    base_left_calibration,
-    closes_held_out,
-)
+from odometry.gap.name.in_calibration import spoils_calibration
+from odometry.gap.name.verdict import Refusal, base_left_calibration, closes_held_out
 from odometry.gap.prepare.statistic import Gap, gap_of, root_mean_square
 from odometry.windows.dense.dense import DenseWindows
 
@@ -103,17 +100,27 @@ class Search:
         self.refusals.setdefault(effect.name, Refusal(effect.name, effect.form, reason))
 
     def _judged(self, before: Fitted, candidates: Sequence[Effect]) -> list[Judged]:
-        """The quick forms, and those of contact forces where the quick ones leave something."""
+        """The quick forms, and those of contact forces where an effect leaves something."""
         judged = judge(self.fitter, before, candidates, self.config, self.progress)
         best = self.best_earner(judged, before) or self._reference_first(judged, before)
-        if best is None or self.fitter.spread(best.fitted) < self.config.contact_spread:
+        found = before if best is None else best.fitted
+        if not found.effects or self.fitter.spread(found) < self.config.contact_spread:
             return judged
         taken = {added.effect.name for added in before.effects}
         contacts = [e for e in self._contacts if e.name not in taken]
         slow = of_the_same_robot(contacts, [added.effect for added in before.effects])
         more = judge(self.fitter, before, slow, self.config, self.progress)
-        fits = [one.fitted for one in (*judged, *more)]
+        fits = [one.fitted for one in (*judged, *filter(self._holds_in_calibration, more))]
         return ranked(self.fitter, before, fits, self.config)
+
+    def _holds_in_calibration(self, one: Judged) -> bool:
+        """Whether an effect that acts in every drive does so in the calibration runs."""
+        added, calibration = one.fitted.effects[-1], self.fitter.calibration
+        gain = one.gain / self.fitter.measured.expected
+        reason = spoils_calibration(added, gain, calibration, self.config)
+        if reason:
+            self.refuse(one.effect, reason)
+        return not reason
 
     @cached_property
     def _contacts(self) -> tuple[Effect, ...]:

@@ -2,9 +2,12 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from odometry.effects.commands.wheel_scale import WheelScale
+from odometry.effects.interface.corrected import Added
+from odometry.effects.motion.contact_effects import SlopeByContact
 from odometry.effects.motion.traction_loss import TractionLoss
 from odometry.gap.config import GapConfig
 from odometry.gap.name.search import Search
@@ -55,3 +58,28 @@ def test_a_name_does_not_stand_where_a_refused_candidate_gains_much_more(
     best = search.best_earner(judged, SimpleNamespace(effects=()))
     assert (best and best.effect.name) == expected
     assert "traction_loss" in search.refusals
+
+
+@pytest.mark.parametrize(
+    ("beside", "spread", "tried"),
+    [(True, 2.0, True), (False, 2.0, False), (True, 1.0, False)],
+)
+def test_contact_forces_are_tried_beside_an_effect_where_nothing_quick_pays(
+    monkeypatch, beside, spread, tried
+):
+    """A slope beside late poses: no quick form need be good enough to lead to it."""
+    asked = []
+    monkeypatch.setattr(
+        "odometry.gap.name.search.judge",
+        lambda _, __, candidates, *___: asked.extend(candidates) or [],
+    )
+    monkeypatch.setattr("odometry.gap.name.search.ranked", lambda *_: [])
+    fitter = SimpleNamespace(spread=lambda _: spread)
+    search = Search(fitter, None, (), None, None, GapConfig(), lambda: None)
+    search.__dict__["_contacts"] = (SlopeByContact(),)
+    monkeypatch.setattr(search, "best_earner", lambda *_: None)
+    monkeypatch.setattr(search, "_reference_first", lambda *_: None)
+    found = Added(WheelScale(), np.array([1.05, 1.0]))
+    before = SimpleNamespace(effects=(found,) if beside else ())
+    search._judged(before, ())
+    assert any(effect.slow for effect in asked) == tried
