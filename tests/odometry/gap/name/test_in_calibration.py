@@ -8,9 +8,15 @@ import pytest
 from odometry.effects.commands.wheel_scale import WheelScale
 from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.late_by_chance import LateByChance
+from odometry.effects.motion.contact_effects import SlopeByContact
 from odometry.gap.config import GapConfig
 from odometry.gap.name.candidates import quick_effects
-from odometry.gap.name.in_calibration import _pays, in_calibration, is_new
+from odometry.gap.name.in_calibration import (
+    _pays,
+    in_calibration,
+    is_new,
+    spoils_calibration,
+)
 from odometry.gap.prepare.scenes import scene_of
 from tests.odometry.gap.name.test_further import searched
 
@@ -121,3 +127,21 @@ def test_a_name_that_the_calibration_shows_as_much_does_not_stand(known, known_s
     for calibration, reason in ((known, ""), (known_small, "the calibration runs show as much")):
         search, found = searched(calibration, *runs, WheelScale())
         assert search._fails(found)[:33] == reason
+
+
+@pytest.mark.parametrize(("gain", "spoils"), [(0.01, True), (1e6, False)])
+def test_an_effect_of_every_drive_spoils_a_calibration_that_does_not_show_it(
+    known, known_small, gain, spoils
+):
+    """Unless it loses little there of what it gains, or the calibration runs do show it."""
+    wheels = Added(WheelScale(), np.full(2, 0.95))
+    assert bool(spoils_calibration(wheels, gain, known, CONFIG)) == spoils
+    assert spoils_calibration(wheels, gain, known_small, CONFIG) == ""
+
+
+def test_level_calibration_runs_say_nothing_of_a_slope(known, monkeypatch):
+    """What noise of roll and pitch makes of one is not what they would show."""
+    lost = "odometry.gap.name.in_calibration._all_gains"
+    monkeypatch.setattr(lost, lambda *_: np.full(12, -100.0))
+    slope = Added(SlopeByContact(), np.array([0.0, 0.0, 0.5, 0.5, 0.02]))
+    assert spoils_calibration(slope, 0.01, known, CONFIG) == ""

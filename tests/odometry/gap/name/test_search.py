@@ -83,3 +83,24 @@ def test_contact_forces_are_tried_beside_an_effect_where_nothing_quick_pays(
     before = SimpleNamespace(effects=(found,) if beside else ())
     search._judged(before, ())
     assert any(effect.slow for effect in asked) == tried
+
+
+@pytest.mark.parametrize(("reason", "left"), [("not in the calibration", 0), ("", 1)])
+def test_contact_forces_that_spoil_the_calibration_do_not_compete(monkeypatch, reason, left):
+    """An inertia beside a loss of traction, by drives as fast as those of the calibration."""
+    found = Added(WheelScale(), np.array([1.05, 1.0]))
+    fit = SimpleNamespace(effects=(found, Added(SlopeByContact(), np.ones(5))))
+    judged = SimpleNamespace(effect=SlopeByContact(), fitted=fit, gain=10.0)
+    module = "odometry.gap.name.search"
+    monkeypatch.setattr(f"{module}.judge", lambda _, __, of, *___: [judged] if of else [])
+    monkeypatch.setattr(f"{module}.ranked", lambda _, __, fits, *___: fits)
+    monkeypatch.setattr(f"{module}.spoils_calibration", lambda *_: reason)
+    fitter = SimpleNamespace(
+        spread=lambda _: 2.0, calibration=None, measured=SimpleNamespace(expected=100.0)
+    )
+    search = Search(fitter, None, (), None, None, GapConfig(), lambda: None)
+    search.__dict__["_contacts"] = (SlopeByContact(),)
+    monkeypatch.setattr(search, "best_earner", lambda *_: None)
+    monkeypatch.setattr(search, "_reference_first", lambda *_: None)
+    assert len(search._judged(SimpleNamespace(effects=(found,)), ())) == left
+    assert ("slope_sliding" in search.refusals) == bool(reason)
