@@ -18,7 +18,7 @@ from odometry.windows.dense.dense_noise import Noise, whitening
 
 PARTS = (0.25, 0.5, 0.75, 1.0)  # of what the effect may always be: stamps are late, and uneven
 BEST = 2  # stretches of the calibration runs without which it must still pay
-SPOILT = 0.1  # of a gain a row: right names lose 0.03 at most, wrong ones 0.12 and more
+SPOILT = 0.1  # of a gain a row: best fits of right names lose 0.03, wrong ones 0.12 and more
 MORE = 2.0  # times as uneven as there: the calibration runs do not have that
 
 
