@@ -7,6 +7,7 @@ from odometry.modes.checks.between_modes import BetweenModes
 from odometry.modes.follow.followed import Followed
 from odometry.modes.models.mode_set import UNDETERMINED
 from odometry.modes.models.velocity import VelocityModes
+from odometry.modes.recorded.turning_points import WINDOW_S, TurningPoints
 from odometry.modes.show.doubt import Doubt, share_of_time, when
 from odometry.modes.show.gain_words import gain_words
 from odometry.modes.show.gyroscope_doubts import of_gyroscope
@@ -194,10 +195,19 @@ def not_checked(followed: Followed) -> tuple[str, ...]:
         found.append(
             f"the distance, without {missing}: a load on both tyres turns as another terrain does"
         )
-    if signals.turning_points is None or not np.isfinite(modes.turning_most_m):
-        where = "" if signals.turning_points is None else " in the runs of the set"
+    missing = _missing_of_point(signals.turning_points, modes)
+    if missing:
         found.append(
-            f"about which point the robot turns, without measured yaw{where}: a load that shifts "
-            "turns as another terrain does"
+            f"about which point the robot turns, without {missing}: a load that shifts turns as "
+            "another terrain does"
         )
     return tuple(found)
+
+
+def _missing_of_point(points: TurningPoints | None, modes: VelocityModes) -> str:
+    """What a run or the set lacks to hold the point of a turn against the set; "" if nothing."""
+    if points is None:
+        return "measured yaw"
+    if not np.isfinite(modes.turning_most_m):
+        return "measured yaw in the runs of the set"
+    return "" if len(points.ends_s) else f"{WINDOW_S:g} s of measured yaw in which it turns enough"

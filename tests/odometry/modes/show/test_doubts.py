@@ -11,7 +11,8 @@ from odometry.modes.follow.followed import Followed
 from odometry.modes.follow.gyroscope_bias import GyroscopeTrust
 from odometry.modes.models.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.modes_config import ModesConfig
-from odometry.modes.show.doubts import doubts
+from odometry.modes.recorded.turning_points import TurningPoints
+from odometry.modes.show.doubts import doubts, not_checked
 from odometry.modes.show.files import content_of
 from odometry.modes.show.words import in_short, sentences
 from tests.odometry.modes.mode_examples import run_of, track, velocity_set
@@ -123,3 +124,23 @@ def test_a_gyroscope_that_repeats_one_reading_is_said():
     ]
     assert len(said) == 1
     assert "the gyroscope repeats one reading between" in said[0]
+
+
+@pytest.mark.parametrize(
+    ("windows", "most_m", "missing"),
+    [
+        (None, 0.1, "without measured yaw:"),
+        (1, np.nan, "without measured yaw in the runs of the set:"),
+        (0, 0.1, "without 16 s of measured yaw in which it turns enough:"),
+        (1, 0.1, None),
+    ],
+)
+def test_it_says_what_lacks_to_check_the_point_of_turns(windows, most_m, missing):
+    followed = followed_with()
+    modes = replace(followed.mode_set.modes, turning_least_m=-most_m, turning_most_m=most_m)
+    points = None if windows is None else TurningPoints(*np.zeros((3, windows)))
+    signals = replace(followed.signals, turning_points=points)
+    known = replace(followed, mode_set=replace(followed.mode_set, modes=modes), signals=signals)
+    found = [sentence for sentence in not_checked(known) if "which point" in sentence]
+    assert len(found) == (missing is not None)
+    assert missing is None or missing in found[0]
