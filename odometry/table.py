@@ -69,6 +69,14 @@ class Table:
             repeated = repeated.rows(np.flatnonzero(np.isin(repeats_of, lines)))
         return replace(self, columns=columns, lines=lines, repeated=repeated)
 
+    def without_repeated(self) -> "Table":
+        """The first row of each stamp, where stamps do not go back; `repeated` has the others."""
+        repeated = np.diff(self.stamps_s, prepend=-np.inf) == 0
+        if not repeated.any():
+            return self
+        kept, dropped = (self.rows(np.flatnonzero(rows)) for rows in (~repeated, repeated))
+        return replace(kept, repeated=dropped)
+
     def with_repeated(self) -> "Table":
         """The rows of the file, with those that share a stamp, in the order of their lines."""
         if self.repeated is None:

@@ -4,7 +4,6 @@ import csv
 import math
 from array import array
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -70,16 +69,7 @@ def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] 
     }
     all_lines = np.frombuffer(lines, dtype=np.int64)
     _check_not_back(columns["t"], file, all_lines)
-    return without_repeated(Table(file, columns, all_lines))
-
-
-def without_repeated(table: Table) -> Table:
-    """The first row of each stamp of a table whose stamps do not go back; it keeps the others."""
-    repeated = np.diff(table.stamps_s, prepend=-math.inf) == 0
-    if not repeated.any():
-        return table
-    kept, dropped = (table.rows(np.flatnonzero(rows)) for rows in (~repeated, repeated))
-    return replace(kept, repeated=dropped)
+    return Table(file, columns, all_lines).without_repeated()
 
 
 def write_csv_table(file: Path, columns: Mapping[str, AnyArray], decimals: int = 9) -> None:

@@ -51,17 +51,17 @@ def _left(run: Run, late: dict[str, LateRows]) -> tuple[str, float]:
     return name, left_s if certain and left_s < np.quantile(late[name].late_s, NEARLY_ALL) else 0.0
 
 
-def _event(file: str, rows: LateRows, of_all_s: float) -> FilterEvent:
-    begin_s, end_s = rows.rows.stamps_s[[0, -1]].tolist()
+def _event(file: str, late: LateRows, of_all_s: float) -> FilterEvent:
+    begin_s, end_s = late.rows.stamps_s[[0, -1]].tolist()
     left = f", {of_all_s:.2g} s by the yaw of poses, was undone" if of_all_s else " is not known"
     stamps = (
-        f"stamps in steps of {rows.step_s:g} s, which {rows.at_once.max()} rows share at most: "
-        if rows.are_coarse
-        else f"stamps of arrival, late by {rows.late_s.mean():.2g} s in the mean "
-        f"and {rows.late_s.max():.2g} s at most beside even ones: "
+        f"stamps in steps of {late.step_s:g} s, which {late.at_once.max()} rows share at most: "
+        if late.are_coarse
+        else f"stamps of arrival, late by {late.late_s.mean():.2g} s in the mean "
+        f"and {late.late_s.max():.2g} s at most beside even ones: "
     )
     text = (
         f"rows of {file} have {stamps}they were taken at even stamps; what all of them are late by"
         f"{left}"
     )
-    return FilterEvent("late_rows", begin_s, end_s, text, (rows.uneven_s, of_all_s))
+    return FilterEvent("late_rows", begin_s, end_s, text, (late.uneven_s, of_all_s))

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.io.csv_table import without_repeated
 from odometry.table import Table
 
 
@@ -36,7 +35,7 @@ def stamped(table, stamps_s, rows=slice(None)):
     """Other stamps, of all or of some rows, as a reader leaves them."""
     columns = {name: np.asarray(values)[rows] for name, values in table.columns.items()}
     lines = np.arange(2, len(stamps_s) + 2)
-    return without_repeated(Table(table.file, {**columns, "t": stamps_s}, lines))
+    return Table(table.file, {**columns, "t": stamps_s}, lines).without_repeated()
 
 
 def with_arrival(run, change=by_chance):

@@ -23,7 +23,6 @@ import numpy as np
 
 import odometry.preparation.prepared as preparation
 from odometry.checks.recording import check_recording
-from odometry.io.csv_table import without_repeated
 from odometry.run import Run
 from odometry.table import Table
 from terrain.main_job import run_odometry
@@ -138,7 +137,7 @@ def arrived(table, name, fault):
     rows = np.argsort(stamps_s, kind="stable")
     columns = {name: column[rows] for name, column in table.columns.items()}
     late = Table(table.file, {**columns, "t": stamps_s[rows]}, np.arange(2, len(rows) + 2))
-    return without_repeated(late)
+    return late.without_repeated()
 
 
 def said(run):

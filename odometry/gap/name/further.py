@@ -94,10 +94,12 @@ class Further(Standing):
         ):
             self.sure_with_measured.append(found)
         by_few = reason.endswith(MAY_BE_CHANCE) and self._is_held_out_by_few
-        if by_few and all(map(_lasts, found.effects)):
-            most = self.config.mostly_closed
-            return "" if self._is_sure_with_measured(found, most) else reason
-        return reason
+        stands = (
+            by_few
+            and all(map(_lasts, found.effects))
+            and self._is_sure_with_measured(found, self.config.mostly_closed)
+        )
+        return "" if stands else reason
 
     @cached_property
     def _is_held_out_by_few(self) -> bool:

@@ -47,11 +47,7 @@ def is_new(added: Added, calibration: Calibration, config: GapConfig) -> str:
     part of the noise floor, as what makes wheels no constant ICRs is. What these runs hardly do, as
     to go slowly, pays by rounding alone.
     """
-    effect = added.effect
-    if effect.course or not calibration.held_back:
-        return ""
-    known = [scene for _, scene in calibration.held_back]
-    if any(effect.lacks(scene.inputs, calibration.base) for scene in known):
+    if added.effect.course or not _scenes_of(added, calibration):
         return ""
     whole, half = (_all_gains(_share_of(added, share), calibration) for share in (1.0, 0.5))
     if sure_sum(whole, BEST) <= config.equivalent_margin or whole.sum() < half.sum():
@@ -67,14 +63,21 @@ def spoils_calibration(
     By a part of the chi-squared a row, `gain`, that it takes off the measured runs. Calibration
     runs that are driven more slowly, or on level terrain, say little of it, and lose as little.
     """
-    known = [scene for _, scene in calibration.held_back]
-    if not known or any(added.effect.lacks(of.inputs, calibration.base) for of in known):
+    scenes = _scenes_of(added, calibration)
+    if not scenes:
         return ""
-    rows = sum(len(scene) * scene.rows_per_window for scene in known)
+    rows = sum(len(scene) * scene.rows_per_window for scene in scenes)
     lost = -float(_all_gains(added, calibration).sum())
     if lost <= max(config.equivalent_margin, SPOILT * gain * rows):
         return ""
     return "it would act in the calibration runs as well, and these do not show it"
+
+
+def _scenes_of(added: Added, calibration: Calibration) -> list[DenseWindows]:
+    """The calibration runs that are held back in turn; none where one lacks what it acts on."""
+    scenes = [scene for _, scene in calibration.held_back]
+    lacking = any(added.effect.lacks(scene.inputs, calibration.base) for scene in scenes)
+    return [] if lacking else scenes
 
 
 def _share_of(added: Added, share: float) -> Added:

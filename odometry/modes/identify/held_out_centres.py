@@ -11,7 +11,6 @@ from odometry.modes.identify.held_out_gains import LEAST_WINDOWS, USUAL
 from odometry.modes.models.traction import LEFT_TURN, RIGHT_TURN, TractionModes, twists_of
 from odometry.modes.models.turning_centres import (
     LATE_S,
-    STEP_M,
     centres,
     mean_centre_m,
     predicted_steps,
@@ -19,6 +18,7 @@ from odometry.modes.models.turning_centres import (
 from odometry.modes.recorded.bank_inputs import pose_signals
 from odometry.modes.recorded.measured_steps import LEAST_STEPS, StepWindows, step_windows
 from odometry.modes.recorded.pose_steps import AHEAD, ASIDE, TURN, PoseSteps, pose_steps
+from odometry.modes.recorded.turning_points import STEP_M
 from odometry.run import Run
 from odometry.windows.recorded.spans import runs_of
 

@@ -15,11 +15,12 @@ from odometry.modes.models.response import lagged
 from odometry.modes.models.traction import TURNS, twists_of
 from odometry.modes.recorded.measured_steps import StepWindows, during
 from odometry.modes.recorded.pose_steps import AHEAD, ASIDE, TURN, PoseSteps
+from odometry.modes.recorded.turning_points import DRIFT_M_S, STEP_M
 
 LATE_S = np.arange(-1, 9) * 0.1  # of poses, of speed and of turn against the treads
-# Prior deviations of a drift, of one by the turn, and of the error of a step. Chosen in development
-# (tests/studies/modes.md): without the second slopes lose 1.5 points of right names instead of 0.7.
-DRIFT_M_S, SLIDE_M, STEP_M = 0.03, 0.02, 0.02
+# Prior deviation of a drift by the turn. Chosen in development (tests/studies/modes.md): without it
+# slopes lose 1.5 points of right names instead of 0.7.
+SLIDE_M = 0.02
 TURNING_RAD_S, TURNING_S = 0.05, 2.0  # in a window: less is no turn
 FREE_M = 1e3  # of a centre: any
 UNKNOWNS = 6  # of a window: centre to the left and ahead, both drifts in x and y

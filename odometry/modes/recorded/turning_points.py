@@ -18,6 +18,7 @@ from odometry.windows.recorded.measured_poses import YAW_FOUND
 WINDOW_S = 16.0
 # Prior deviations of a drift in the world, as on a slope, and of the error of a step.
 DRIFT_M_S, STEP_M = 0.03, 0.02
+FREE_M = 20.0  # of a point: any
 TURNING_RAD_S, TURNED_S = 0.03, 3.0  # in a window: less determines no point
 UNKNOWNS = 3  # of a window: the point, and a drift in x and y
 
@@ -63,7 +64,7 @@ def _points(steps: PoseSteps) -> TurningPoints:
     drift = lasts_s * np.array([-np.sin(steps.heading_rad), np.cos(steps.heading_rad)])
     table = np.vstack([-turn, drift])
     normal = np.moveaxis(windows.sums(table[:, None] * table), -1, 0)
-    prior = np.diag(np.square([1e-3, STEP_M / DRIFT_M_S, STEP_M / DRIFT_M_S]))
+    prior = np.diag(STEP_M**2 / np.square([FREE_M, DRIFT_M_S, DRIFT_M_S]))
     inverse = np.linalg.inv(normal + prior)
     right = windows.sums(table * aside)
     found = np.einsum("wij,jw->wi", inverse, right)

@@ -10,7 +10,6 @@ from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.tread_motion import _cause
-from odometry.io.csv_table import without_repeated
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import PERIOD_S, stepping, table, winding
 from tests.odometry.checks.faulty import put, without_gyroscope
@@ -46,7 +45,7 @@ def test_poses_of_whole_seconds_are_not_called_late():
     kept = np.flatnonzero(np.diff(t, prepend=-1.0) > 0)
     pose = table("pose.csv", **{n: c[kept] for n, c in run.pose.columns.items()} | {"t": t[kept]})
     assert warnings(replace(run, pose=pose)) != []
-    read = without_repeated(replace(run.pose, columns={**run.pose.columns, "t": t}))
+    read = replace(run.pose, columns={**run.pose.columns, "t": t}).without_repeated()
     assert read.stamps_s.tolist() == pose.stamps_s.tolist()
     assert warnings(replace(run, pose=read)) == ["repeated_stamps"]
 
