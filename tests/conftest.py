@@ -12,7 +12,7 @@ for library in ("OMP", "OPENBLAS", "MKL"):
 os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
 # Also where the environment wants no compiled files: without them each of the 60 processes that
 # tests start compiles the packages again, and each process of tests all assertions. Git ignores
-# them. A program that sets it in its own process (`tests/studies/mutants.py`) has none.
+# them. A program that sets it in its own process (`tests/studies/speed/mutants.py`) has none.
 if os.environ.pop("PYTHONDONTWRITEBYTECODE", None) is not None:
     sys.dont_write_bytecode = False
 

@@ -66,7 +66,7 @@ def options_of(study: ast.Module) -> list[str]:
     return [a.value for a in added if isinstance(a, ast.Constant) and str(a.value).startswith("-")]
 
 
-STUDIES = sorted((ROOT / "tests" / "studies").glob("*.py"))
+STUDIES = sorted((ROOT / "tests" / "studies").glob("*/*.py"))
 
 
 @pytest.mark.parametrize("file", STUDIES, ids=lambda file: file.stem)
@@ -74,6 +74,12 @@ def test_a_study_begins_with_its_options(file: Path) -> None:
     study = ast.parse(file.read_text(encoding="utf-8"))
     words = ast.get_docstring(study) or ""
     assert [option for option in options_of(study) if option not in words] == []
+
+
+@pytest.mark.parametrize("file", STUDIES, ids=lambda file: file.stem)
+def test_a_program_says_its_first_lines_as_help(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert "__main__" not in text or "__doc__" in text
 
 
 @pytest.mark.parametrize("module", PUBLIC)

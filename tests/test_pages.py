@@ -9,8 +9,8 @@ import pytest
 
 from odometry.report.drawing.figure import save_figure
 from odometry.report.drawing.html import Grid, Listing, Paragraph, Picture, Section, write_page
-from tests.studies.browser import Browser, installed
-from tests.studies.pages import faults
+from tests.studies.speed.browser import Browser, installed
+from tests.studies.speed.pages import faults
 
 ROOT = Path(__file__).parents[1]
 PROGRAM = installed()
@@ -86,7 +86,7 @@ def test_numbers_stay_on_one_line_of_a_small_screen(browser, tmp_path):
 @needs_browser
 def test_a_page_that_does_not_exist_is_an_error(tmp_path):
     ran = subprocess.run(
-        [sys.executable, "-m", "tests.studies.pages", str(tmp_path / "missing.html")],
+        [sys.executable, "-m", "tests.studies.speed.pages", str(tmp_path / "missing.html")],
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 2
@@ -96,7 +96,7 @@ def test_a_page_that_does_not_exist_is_an_error(tmp_path):
 def test_without_a_browser_it_says_so(tmp_path):
     environment = os.environ | {"PATH": str(tmp_path), "PYTHONPATH": str(ROOT)}
     ran = subprocess.run(
-        [sys.executable, "-m", "tests.studies.pages", "a.html"],
+        [sys.executable, "-m", "tests.studies.speed.pages", "a.html"],
         env=environment, cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ran.returncode == 2

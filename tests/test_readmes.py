@@ -144,7 +144,7 @@ def test_the_settings_are_the_defaults() -> None:
 
 def test_every_study_is_named() -> None:
     text = (ROOT / "tests/studies/README.md").read_text(encoding="utf-8")
-    studies = {file.name for file in (ROOT / "tests/studies").glob("*.py")}
+    studies = {file.name for file in (ROOT / "tests/studies").glob("*/*.py")}
     assert {name for name in studies if f"`{name}`" not in text} == set()
 
 

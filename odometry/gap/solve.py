@@ -76,7 +76,7 @@ def least_squares(
 ) -> Found:
     """Levenberg and Marquardt's search, steps cut off at the bounds (low, high).
 
-    On 263 fits of blind cases (`tests/studies/gap_solvers.py`) SciPy's `trf`, `dogbox` and `lm`
+    On 263 fits of blind cases (`tests/studies/gap/gap_solvers.py`) SciPy's `trf`, `dogbox` and `lm`
     take 1.4 to 1.5 times as many evaluations. Within 1 of the least chi-squared of all solvers are
     89 % by this search, 91, 89 and 87 % by those; `lm` leaves the bounds in 9 %.
     """

@@ -147,7 +147,8 @@ def _columns(rows: Sequence[Sequence[str]]) -> list[str]:
     return lines
 
 
-STEADY_S = 20.0  # from here on tests/studies/coverage.py finds 95 % or more where slip wanders
+# From here on tests/studies/identification/coverage.py finds 95 % or more where slip wanders.
+STEADY_S = 20.0
 
 
 def short_recording(fit: Fit) -> list[str]:

@@ -9,8 +9,8 @@ from odometry.config import require, require_positive
 class ModesConfig:
     """Settings of the estimator and of its answers.
 
-    Numbers of deviations and shares were chosen on seeds of `tests/studies/modes_faults.py`, as the
-    tests that use them say.
+    Numbers of deviations and shares were chosen on seeds of
+    `tests/studies/modes/modes_faults.py`, as the tests that use them say.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ STARTS = 12  # headings all round
 FAR_RAD = np.radians(20.0)  # of another yaw that leaves it undetermined
 RULED_OUT = 1e-3  # share of the probability of the best, below which a start is ruled out
 SURE_RAD = 0.35  # of both filters, where their disagreement counts
-# Chosen on 19 recordings (`tests/studies/positions_yaw.py`), so that 95 % are within 2 of them:
+# 95 % are within 2 of them on 19 recordings (tests/studies/identification/positions_yaw.py).
 LASTING = 2.5  # slip lasts, so that the error of yaw is so many of the filter's standard deviations
 LEAST_RAD = np.radians(3.0)
 LARGEST_RAD = np.radians(30.0)  # a larger one is of no use

@@ -5,7 +5,7 @@ import pytest
 
 from tests.fuzz.readers import fails, readers
 
-CHANGES = 100  # tests/studies/fuzz_readers.py makes thousands
+CHANGES = 100  # tests/studies/recordings/fuzz_readers.py makes thousands
 SEED = 12
 
 

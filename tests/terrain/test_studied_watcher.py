@@ -5,7 +5,7 @@ import numpy as np
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.pipeline import replay
 from terrain.config import Config
-from tests.studies.switching_courses import LabellingWatcher, make_course
+from tests.studies.main_job.switching_courses import LabellingWatcher, make_course
 
 
 def test_labels_that_are_all_right_are_the_true_terrains(tmp_path):

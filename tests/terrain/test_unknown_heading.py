@@ -8,7 +8,7 @@ import pytest
 from odometry.run import Run
 from terrain.main_job import run_odometry
 from tests.blind.any_robot import write_clean_run
-from tests.studies.estimation_steps import PARAMETERS
+from tests.studies.main_job.estimation_steps import PARAMETERS
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,8 @@ TOLERANCE = 0.01  # of the yaw rate: no mode is identified better
 LEAST_INFORMATION = 1.0  # on the share: less determines none
 SURE_SHARE = 0.25  # standard deviation of the share of a mode, at most
 LEFT_BIAS_RAD_S = 0.003  # standard deviation of the bias beyond that of the filters
-"""Chosen on clean runs of seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`, of which
-none is taken for a terrain between two; windows of 10 and 12 s take one of 18."""
+"""Chosen on clean runs of seeds 50, 51 and 60 to 63 of `tests/studies/modes/modes_faults.py`, of
+which none is taken for a terrain between two; windows of 10 and 12 s take one of 18."""
 
 
 @dataclass(frozen=True)

@@ -88,8 +88,8 @@ def turns_are_off(
     asked_rad_s : (N, M)
         Steady yaw rate of each mode for the speeds in force before each stamp.
     config : ModesConfig, optional
-        `turn_sigmas` were chosen on seeds 50, 51 and 60 to 63 of `tests/studies/modes_faults.py`:
-        of 18 clean runs 3 have a sum beyond 3.5 somewhere.
+        `turn_sigmas` were chosen on seeds 50, 51 and 60 to 63 of
+        `tests/studies/modes/modes_faults.py`: of 18 clean runs 3 have a sum beyond 3.5 somewhere.
     """
     config = config or ModesConfig()
     # while the robot stands nothing takes back what its turns contradicted

@@ -42,7 +42,7 @@ def travel_check(
     """None without measured travel, or where modes were identified without it.
 
     What a window says holds for as long as it is, where no later one does. `travel_sigmas` of the
-    settings were chosen on seeds 50, 51, 60 and 61 of `tests/studies/modes_faults.py`.
+    settings were chosen on seeds 50, 51, 60 and 61 of `tests/studies/modes/modes_faults.py`.
     """
     config = config or ModesConfig()
     travel = signals.travel

@@ -18,9 +18,10 @@ GYROSCOPE_RAD = 0.01  # by which a gyroscope is off in a window for other reason
 MOST_SIGMAS = 6.0  # of a step, beside as much as it turns: more is a spike, and no scale
 HOLDS_S = 5.0  # what a window says, where no later one does
 """`headings_share` and `headings_sigmas` of `ModesConfig` were chosen on seeds 62 to 65 of
-`tests/studies/modes_faults.py`: with a half instead of a third modes on a gyroscope with a soft
-limit are wrong for 2 % of the time instead of 0.5 %, with three deviations clean runs lose another
-1.3 points. Without GYROSCOPE_RAD half of the windows of a real Warthog contradict the true mode."""
+`tests/studies/modes/modes_faults.py`: with a half instead of a third modes on a gyroscope with a
+soft limit are wrong for 2 % of the time instead of 0.5 %, with three deviations clean runs lose
+another 1.3 points. Without GYROSCOPE_RAD half of the windows of a real Warthog contradict the true
+mode."""
 
 
 def turns_disagree(

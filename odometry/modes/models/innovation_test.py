@@ -24,8 +24,8 @@ MISFIT_LASTS_S = 20.0
 LONG_WINDOW_S = 6.0  # in which a small misfit shows that lasts
 LONG_EVIDENCE = 30.0  # [nat] of a long window for none, at most
 LONG_CLIP = 2.0  # of one innovation: what is large shows in a short window
-"""Chosen on seeds of `tests/studies/modes_faults.py`: SPREAD and the long window on 10 and 20,
-else 0 to 2; `long_sigmas` of `ModesConfig` on 50, 51, 60 and 61."""
+"""Chosen on seeds of `tests/studies/modes/modes_faults.py`: SPREAD and the long window on 10 and
+20, else 0 to 2; `long_sigmas` of `ModesConfig` on 50, 51, 60 and 61."""
 
 
 @dataclass(frozen=True)

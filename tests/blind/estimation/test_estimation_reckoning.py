@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from odometry.run import Run
-from tests.studies.estimation_outputs import with_poses_withheld, without_gyroscope
-from tests.studies.estimation_reckoning import (
+from tests.studies.main_job.estimation_outputs import with_poses_withheld, without_gyroscope
+from tests.studies.main_job.estimation_reckoning import (
     Path,
     at,
     error_per_metre,

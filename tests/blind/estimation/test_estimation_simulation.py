@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
-from tests.studies.estimation_consistency import covariances_of, placed, squared
-from tests.studies.estimation_reckoning import Path, icr_drive, position_errors_m
-from tests.studies.estimation_simulation import STEP_S, Noise, drive, frames_of, loop, run_of, weave
+from tests.studies.main_job.estimation_consistency import covariances_of, placed, squared
+from tests.studies.main_job.estimation_reckoning import Path, icr_drive, position_errors_m
+from tests.studies.main_job.estimation_simulation import (
+    STEP_S,
+    Noise,
+    drive,
+    frames_of,
+    loop,
+    run_of,
+    weave,
+)
 
 ICRS = np.array([0.45, -0.40, -0.05])
 VALUES = dict(zip(("y_left", "y_right", "x_icr"), ICRS, strict=True))

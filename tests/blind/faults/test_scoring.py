@@ -3,7 +3,7 @@
 import pytest
 
 from tests.blind.faults.bases import Base
-from tests.studies import check_scoring as scoring
+from tests.studies.recordings import check_scoring as scoring
 
 RIGHT = ("yaw_unit", "warning", "yaw of +170", "Yaw is in degrees.")
 WRONG = ("late", "warning", "0.2 s", "The poses are late.")

@@ -5,8 +5,8 @@ from scipy.stats import binomtest
 
 from tests.blind.cases import NAMES
 from tests.blind.hidden.catalogue import GROUPS, HIDDEN
-from tests.studies.gap_names import COURSES, MEANING, all_named, course_of, score
-from tests.studies.gap_table import mistakes_of, table_of, with_interval
+from tests.studies.gap.gap_names import COURSES, MEANING, all_named, course_of, score
+from tests.studies.gap.gap_table import mistakes_of, table_of, with_interval
 
 
 @pytest.mark.parametrize(

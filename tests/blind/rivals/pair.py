@@ -11,7 +11,7 @@ class Pair:
     Attributes
     ----------
     names : (str, str)
-        In plain words, families of `tests/studies/gap_names.py`.
+        In plain words, families of `tests/studies/gap/gap_names.py`.
     given : str
         The drive that cannot distinguish them: a name of `given.GIVEN`.
     match : callable

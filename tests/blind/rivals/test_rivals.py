@@ -17,9 +17,9 @@ from tests.blind.rivals.cases import (
 )
 from tests.blind.rivals.drives import SHAPES, Proposal, drive_of
 from tests.blind.rivals.pairs import PAIRS
-from tests.studies.gap_names import MEANING
-from tests.studies.gap_next import apart as judged_apart
-from tests.studies.gap_next import proposal_of
+from tests.studies.gap.gap_names import MEANING
+from tests.studies.gap.gap_next import apart as judged_apart
+from tests.studies.gap.gap_next import proposal_of
 
 
 @pytest.mark.parametrize("pair", EVERY_PAIR)

@@ -13,7 +13,7 @@ from odometry.positions.heading import found_heading
 from odometry.positions.timing import Timing, timings_of
 from odometry.run import Run
 from tests.odometry.positions_drives import drive, emptied, table
-from tests.studies.positions import emptied as without_yaw
+from tests.studies.identification.positions import emptied as without_yaw
 
 
 def moved_in_time(of, late_s):

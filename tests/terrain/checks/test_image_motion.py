@@ -16,7 +16,7 @@ from terrain.checks.ground_steps import GroundSteps, ground_steps
 from terrain.checks.image_agreement import ImageMotion
 from terrain.checks.image_motion import POOR, image_motion
 from terrain.checks.terrain_views import TerrainViews
-from tests.studies.check_image_motion import moved, with_images
+from tests.studies.recordings.check_image_motion import moved, with_images
 
 
 def found(run, camera):

@@ -12,7 +12,7 @@ from terrain.checks import image_motion as checked
 from terrain.checks.image_motion import image_motion
 from terrain.checks.image_stretches import BLANK, SHOWS, STAYS, ImageStretches, _lasting
 from terrain.checks.unrelated_images import agrees
-from tests.studies.check_image_motion import with_images
+from tests.studies.recordings.check_image_motion import with_images
 
 SIZE = (480, 640)
 

@@ -11,7 +11,7 @@ from terrain.checks import image_motion as image_motion_module
 from terrain.checks import lens_from_motion
 from terrain.checks.ground_steps import GroundSteps
 from terrain.checks.image_motion import image_motion
-from tests.studies.check_image_motion import moved
+from tests.studies.recordings.check_image_motion import moved
 
 
 def scaled(camera, *by):

@@ -1,6 +1,6 @@
 """What is hidden in blind cases is named, at the noise of the issue; one seed of every effect.
 
-Twenty seeds of every kind, at three levels of noise: `tests/studies/gap_cases.py`. A slope by
+Twenty seeds of every kind, at three levels of noise: `tests/studies/gap/gap_cases.py`. A slope by
 contact forces is named in notebook 06, whose outputs are compared.
 """
 
