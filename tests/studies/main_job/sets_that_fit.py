@@ -54,7 +54,7 @@ def sets_of(runs):
 
 def main():
     """Print how often both agree, and where they do not."""
-    parser = argparse.ArgumentParser()
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--last", action="store_true", help="The recordings held out.")
     last = parser.parse_args().last
     runs = recordings()
