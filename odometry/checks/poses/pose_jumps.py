@@ -103,10 +103,11 @@ def jumps(
 def _findings(evidence: Evidence, of: Steps, peaks: list[int], usual_m: float) -> Iterator[Finding]:
     """By what the treads and the poses did, what a large step is."""
     stood = [i for i in peaks if _stood(of, i)]
-    lost = [i for i in peaks if i not in stood and _lost_treads(evidence, of.stamps_s[i])]
-    peaks = [i for i in peaks if i not in stood and i not in lost]
+    moved = [i for i in peaks if i not in stood]
+    sudden = [i for i in moved if _sudden(of, i) and _by_itself(of, i)]
+    lost = [i for i in moved if i not in sudden and _lost_treads(evidence, of.stamps_s[i])]
+    peaks = [i for i in moved if i not in lost]
     lost = [i for i in lost if of.size_m[i] > STANDING_TIMES * of.noise_m]
-    sudden = [i for i in peaks if _sudden(of, i) and _by_itself(of, i)]
     if stood:
         yield _slip_episodes(evidence, of.stamps_s[stood], float(of.size_m[stood[0]]))
     if lost:

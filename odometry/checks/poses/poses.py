@@ -10,6 +10,7 @@ from odometry.checks.poses.coarse_part import coarse_part
 from odometry.checks.poses.far_sensor import far_sensor
 from odometry.checks.poses.held_poses import PoseTrack, frozen_poses, pose_bursts, repeated_poses
 from odometry.checks.poses.pose_jumps import jumps
+from odometry.checks.poses.sudden_steps import pose_steps
 from odometry.checks.poses.yaw_jumps import yaw_jumps
 
 OUTLIERS = 0.01  # share of poses that go out and back, from which it is a warning
@@ -39,10 +40,15 @@ def poses(evidence: Evidence) -> Iterator[Finding]:
     yield from repeated or frozen
     yield from pose_bursts(evidence, track)
     spans_s = [*evidence.left_out_s, *(span for finding in frozen for span in finding.spans_s)]
-    yield from yaw_jumps(evidence, of_yaw)
-    yield from far_sensor(evidence)
     inside = known[rows]  # of the time of the treads
-    yield from jumps(evidence, rows[inside], travel_m[inside], np.array(spans_s).reshape(-1, 2))
+    sudden = [
+        *yaw_jumps(evidence, of_yaw),
+        *jumps(evidence, rows[inside], travel_m[inside], np.array(spans_s).reshape(-1, 2)),
+    ]
+    yield from sudden
+    yield from far_sensor(evidence)
+    if not (sudden or repeated or frozen):
+        yield from pose_steps(evidence, rows[inside])
 
 
 def _outliers(evidence: Evidence) -> Iterator[Finding]:

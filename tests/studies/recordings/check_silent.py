@@ -1,13 +1,13 @@
 """Faults of recordings that misled and of which nothing was said, by the check and live.
 
     TERRAIN_ODOMETRY_DATA=... python -m tests.studies.recordings.check_silent held [--live]
-        # or dev
+        [--only WORD]    # or dev
 
 Recordings of data/motion (those of one half of `tests/blind/faults/bases.py`) and clean drives of
 `tests/blind/any_robot.py` with a yaw that is turned a little, positions that are stretched a
-little, and poses that are a little late; and what looks like it. A line for each: in how many
-something is named that is not said of the recording as it is. With `--live` a velocity in other
-axes and poses in other frames instead, frame by frame for two minutes.
+little, and poses that are a little late or are corrected from some row on; and what looks like it.
+A line for each: in how many something is named that is not said of the recording as it is. With
+`--live` a velocity in other axes and poses in other frames instead, frame by frame for two minutes.
 """
 
 import argparse
@@ -52,6 +52,22 @@ def antenna(ahead_m, left_m):
     )
 
 
+def corrected(turned_rad, aside_m, yaw=True):
+    """From a moment of the middle half on, poses are turned about that place, or moved aside."""
+
+    def change(t, x, y, w):
+        rng = np.random.default_rng([len(t), round(100 * turned_rad + 1000 * aside_m)])
+        at = np.searchsorted(t, rng.uniform(*np.quantile(t, [0.25, 0.75])))
+        side, after = rng.uniform(-np.pi, np.pi), np.arange(len(t)) >= at
+        angle = turned_rad * rng.choice([-1, 1]) * after
+        dx, dy = x - x[at], y - y[at]
+        x = x[at] + np.cos(angle) * dx - np.sin(angle) * dy + aside_m * after * np.cos(side)
+        y = y[at] + np.sin(angle) * dx + np.cos(angle) * dy + aside_m * after * np.sin(side)
+        return t, x, y, w + angle if yaw else np.nan * w
+
+    return posed(change)
+
+
 OFFLINE = {
     "as it is": posed(lambda t, x, y, w: (t, x, y, w)),
     "yaw + 0.05 rad": posed(lambda t, x, y, w: (t, x, y, w + 0.05)),
@@ -68,6 +84,12 @@ OFFLINE = {
     "positions 0.2 s late": posed(
         lambda t, x, y, w: (t, np.interp(t - 0.2, t, x), np.interp(t - 0.2, t, y), w)
     ),
+    "corrected by 0.1 rad": corrected(0.1, 0.0),
+    "corrected by 0.2 rad": corrected(0.2, 0.0),
+    "corrected by 0.3 m": corrected(0.0, 0.3),
+    "corrected by 0.6 m": corrected(0.0, 0.6),
+    "corrected by 1 m": corrected(0.0, 1.0),
+    "corrected by 0.6 m, no yaw": corrected(0.0, 0.6, yaw=False),
 }
 
 
@@ -123,6 +145,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("half", choices=["dev", "held"])
     parser.add_argument("--live", action="store_true")
+    parser.add_argument("--only", default="", help="faults whose words begin so")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         runs = list(recordings(options.half, Path(place)))
@@ -132,7 +155,8 @@ def main():
                 print(f"{words}: {sum(said)} of {len(said)}", flush=True)
             return
         before = [named(run) for run in runs]
-        for words, change in OFFLINE.items():
+        only = {words: of for words, of in OFFLINE.items() if words.startswith(options.only)}
+        for words, change in only.items():
             pairs = zip(runs, before, strict=True)
             new = [", ".join(sorted(named(change(run)) - known)) for run, known in pairs]
             print(
