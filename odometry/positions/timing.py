@@ -17,7 +17,7 @@ from odometry.errors import OdometryError
 from odometry.run import Run, with_stamps
 from odometry.table import Table
 from odometry.windows.config import WindowConfig
-from odometry.windows.recorded.gyroscope_yaw import PathShape
+from odometry.windows.recorded.gyroscope_yaw import PathShape, Turned
 from odometry.windows.recorded.record import Record
 from odometry.windows.stretches.stretches import position_record_with_yaw_rates
 
@@ -106,15 +106,7 @@ class _Compared:
         self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
         self._early_s = [periods * _period_s(record) for periods in PERIODS]
         self._shape = PathShape(record, LENGTHS_M)
-        self._logs = np.array(
-            [
-                [
-                    [self._log_misfits(late_s, late_s + early_s) for late_s in TRIED_S],
-                    [self._log_misfits(late_s, early_s) for late_s in TRIED_S],
-                ]
-                for early_s in self._early_s
-            ]
-        )
+        self._logs = np.array([self._logs_of(early_s) for early_s in self._early_s])
         self.mean_logs = self._logs.mean(axis=-1)
 
     def gains(self, place: int) -> FloatArray:
@@ -126,8 +118,8 @@ class _Compared:
         for early_s, mean_logs in zip(self._early_s, self.mean_logs, strict=True):
             treads_alone, delay = np.unravel_index(np.argmin(mean_logs), mean_logs.shape)
             late_s = float(TRIED_S[delay])
-            turns_late_s = early_s if treads_alone else late_s + early_s
-            misfits_m, counts = self._shape.of_pieces(*self._delayed(late_s, turns_late_s))[place]
+            turned = self._turned(early_s if treads_alone else late_s + early_s)
+            misfits_m, counts = self._shape.of_pieces(self._driven(late_s), turned)[place]
             logarithms.append(counts * np.log(np.maximum(misfits_m, EXACT_M)))
         return np.asarray(logarithms[0] - np.array(logarithms), dtype=np.float64)
 
@@ -145,19 +137,30 @@ class _Compared:
         if not clear:
             return Timing(0.0, early_s)
         near_s = TRIED_S[best] + np.arange(-COARSE_S, COARSE_S + FINE_S / 2, FINE_S)
-        logs = [self._log_misfits(late_s, late_s + early_s).mean() for late_s in near_s]
+        logs = [
+            self._log_misfits(self._driven(late_s), self._turned(late_s + early_s)).mean()
+            for late_s in near_s
+        ]
         return Timing(float(near_s[np.argmin(logs)]), early_s)
 
-    def _log_misfits(self, late_s: float, turns_late_s: float) -> FloatArray:
-        misfits_m = self._shape.misfits_m(*self._delayed(late_s, turns_late_s))
-        return np.log(np.maximum(misfits_m, EXACT_M))
+    def _logs_of(self, early_s: float) -> FloatArray:
+        """Logarithms (2, D, L) of misfits, for one meaning of yaw rates; see `mean_logs`."""
+        at_stamps, found = self._turned(early_s), []
+        for late_s in TRIED_S:
+            speeds = self._driven(late_s)
+            each = (self._turned(late_s + early_s), at_stamps)
+            found.append([self._log_misfits(speeds, turned) for turned in each])
+        return np.swapaxes(found, 0, 1)
 
-    def _delayed(self, late_s: float, turns_late_s: float) -> tuple[FloatArray, FloatArray]:
-        """Mean tread speeds and yaw rates (N,), each later by its time."""
-        return (
-            _delayed(self._record, self._speeds, late_s),
-            _delayed(self._record, self._rates, turns_late_s),
-        )
+    def _log_misfits(self, speeds: FloatArray, turned: Turned) -> FloatArray:
+        return np.log(np.maximum(self._shape.misfits_m(speeds, turned), EXACT_M))
+
+    def _driven(self, late_s: float) -> FloatArray:
+        """Mean tread speeds (N,), later by a time."""
+        return _delayed(self._record, self._speeds, late_s)
+
+    def _turned(self, late_s: float) -> Turned:
+        return self._shape.turned(_delayed(self._record, self._rates, late_s))
 
 
 def _period_s(record: Record) -> float:

@@ -84,11 +84,12 @@ def _distances(
     edges_s = np.arange(begin_s + margin_s, end_s - margin_s, STRETCH_S)
     silent = touched(evidence.silent_s, edges_s[:-1] - margin_s, edges_s[1:] + margin_s)
     spans_s = [span for span, lost in zip(pairwise(edges_s), silent, strict=True) if not lost]
-    parts = [used & (stamps_s >= a) & (stamps_s < b) for a, b in spans_s]
+    rows = np.flatnonzero(used)
+    places = np.searchsorted(stamps_s[rows], np.reshape(spans_s, (-1, 2)))
     parts = [
         part
-        for part in parts
-        if part.sum() >= FEWEST_POSES and np.abs(np.diff(positions[part])).sum() > SHORTEST_M
+        for part in (rows[first:after] for first, after in places)
+        if len(part) >= FEWEST_POSES and np.abs(np.diff(positions[part])).sum() > SHORTEST_M
     ]
     found = np.empty((1 + len(SMOOTHED_S), len(parts)))
     for row, over_s in enumerate((0.0, *SMOOTHED_S)):

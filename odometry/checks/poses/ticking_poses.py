@@ -1,5 +1,6 @@
 """Positions that jump at a regular beat: a receiver or a SLAM that corrects itself in steps."""
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ HARMONIC = 0.9  # of the largest resultant: multiples of a frequency have one ph
 # does so once in exp(SURELY) recordings.
 SURELY = 12.0
 MANY = 0.3  # share of the beats that have a jump
+TOGETHER = 1000  # jumps whose phases are in memory at once
 SHORTEST_S, LEAST_STEP_M = 1e-3, 1e-9  # against divisions by zero
 
 
@@ -113,8 +115,25 @@ def _strongest(at_s: FloatArray, shortest_s: float) -> tuple[float, float, int]:
     tried_hz = np.arange(1 / LONGEST_S, 1 / shortest_s, step_hz)
     if not len(tried_hz):
         return LONGEST_S, 0.0, 1
-    resultants = np.array([np.abs(np.mean(np.exp(2j * np.pi * f * at_s))) for f in tried_hz])
+    resultants = resultants_of(at_s, tried_hz[0], step_hz, len(tried_hz))
     first = int(np.argmax(resultants > HARMONIC * resultants.max()))
     near = resultants[first : first + OVERSAMPLED + 1]
     best = first + int(np.argmax(near))
     return float(1 / tried_hz[best]), float(resultants[best]), len(tried_hz)
+
+
+def resultants_of(at_s: FloatArray, first_hz: float, step_hz: float, count: int) -> FloatArray:
+    """Mean resultants (count,) of the phases of times (K,) at frequencies in even steps.
+
+    A phasor at a frequency is that of the first of some frequencies times that of the distance:
+    so many exponentials are taken as two roots of their number, and the rest is a product.
+    """
+    together = math.isqrt(count) + 1
+    firsts_hz = first_hz + together * step_hz * np.arange(math.ceil(count / together))
+    apart_hz = step_hz * np.arange(together)
+    sums = np.zeros((len(firsts_hz), together), np.complex128)
+    for begin in range(0, len(at_s), TOGETHER):
+        some_s = at_s[begin : begin + TOGETHER]
+        firsts, apart = (np.exp(2j * np.pi * np.outer(hz, some_s)) for hz in (firsts_hz, apart_hz))
+        sums += firsts @ apart.T
+    return np.abs(sums).ravel()[:count] / len(at_s)

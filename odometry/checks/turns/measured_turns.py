@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import Motion
+from odometry.checks.evidence.once import once
 from odometry.checks.statistics.relation import relation
 from odometry.windows.recorded.spans import runs_of
 
@@ -70,14 +72,18 @@ class MeasuredTurns:
         way_m = (self.target[inside] - of_other) / fit.coefficients[side]
         return np.asarray(way_m / self.motion.lasts_s[inside])
 
-    @property
+    @cached_property
     def _treads_m(self) -> FloatArray:
         return np.stack([self.motion.left_m, self.motion.right_m], axis=-1)
 
     def _moving(self, fastest_m_s: float) -> BoolArray:
         """Windows (K,) that were measured and in which a tread moves."""
-        fast = np.abs(self._treads_m).max(axis=1) > MOVING * fastest_m_s * self.motion.lasts_s
-        return np.asarray(np.isfinite(self.target) & fast)
+        return np.asarray(self._largest_m > MOVING * fastest_m_s * self.motion.lasts_s)
+
+    @cached_property
+    def _largest_m(self) -> FloatArray:
+        """Way (K,) of the tread that moves most; NaN where nothing was measured."""
+        return np.where(np.isfinite(self.target), np.abs(self._treads_m).max(axis=1), np.nan)
 
     def _within(self, span: FloatArray | tuple[float, float]) -> BoolArray:
         begun, ended = self.motion.start_s >= span[0], self.motion.end_s <= span[1]
@@ -134,5 +140,15 @@ def measured_turns(evidence: Evidence) -> Iterator[MeasuredTurns]:
     The way along is none of them: it changes where treads slip.
     """
     if evidence.yaw_rate is not None:
-        yield MeasuredTurns(evidence.uniform, evidence.uniform.gyroscope_rad)
-    yield MeasuredTurns(evidence.turn_motion, evidence.pose_turn_rad)
+        yield _by_gyroscope(evidence)
+    yield _by_poses(evidence)
+
+
+@once
+def _by_gyroscope(evidence: Evidence) -> MeasuredTurns:
+    return MeasuredTurns(evidence.uniform, evidence.uniform.gyroscope_rad)
+
+
+@once
+def _by_poses(evidence: Evidence) -> MeasuredTurns:
+    return MeasuredTurns(evidence.turn_motion, evidence.pose_turn_rad)

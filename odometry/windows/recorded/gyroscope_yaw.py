@@ -36,7 +36,7 @@ def yaw_rates_of(record: Record) -> FloatArray | None:
     shape = PathShape(record, (LENGTH_M,))
 
     def best_of(biases: FloatArray) -> float:
-        misfits = [shape.misfits_m(speeds, rates - bias)[0] for bias in biases]
+        misfits = [shape.misfits_m(speeds, shape.turned(rates - bias))[0] for bias in biases]
         return float(biases[np.argmin(misfits)])
 
     tried = np.linspace(-LARGEST_BIAS_RAD_S, LARGEST_BIAS_RAD_S, COARSE)
@@ -60,16 +60,22 @@ class PathShape:
         ]
         self._measured = [_centred(places, piece) for piece in self._pieces]
 
-    def misfits_m(self, speeds_m_s: FloatArray, rates_rad_s: FloatArray) -> FloatArray:
+    def turned(self, rates_rad_s: FloatArray) -> "Turned":
+        """What yaw rates (N,) alone make of a path."""
+        per_speed = _per_speed(rates_rad_s, self._steps_s)
+        path = self._path(rates_rad_s * per_speed)
+        return Turned(per_speed, [_centred(path, pieces) for pieces in self._pieces])
+
+    def misfits_m(self, speeds_m_s: FloatArray, turned: "Turned") -> FloatArray:
         """Sums (L,) of distances [m] between the positions and the path of yaw rates (N,).
 
         See `of_pieces`.
         """
-        of_pieces = self.of_pieces(speeds_m_s, rates_rad_s)
+        of_pieces = self.of_pieces(speeds_m_s, turned)
         return np.array([distances.sum() for distances, _ in of_pieces])
 
     def of_pieces(
-        self, speeds_m_s: FloatArray, rates_rad_s: FloatArray
+        self, speeds_m_s: FloatArray, turned: "Turned"
     ) -> list[tuple[FloatArray, IntArray]]:
         """For each length, sums (P,) of distances [m] of its pieces, and of how many positions.
 
@@ -77,16 +83,27 @@ class PathShape:
         length times the yaw rate: that holds for any tread ICRs and any place of the antenna. Each
         piece has a share and lengths of its own.
         """
-        per_speed = _per_speed(rates_rad_s, self._steps_s)
-        paths = [
-            np.append(0.0, np.cumsum(moved * per_speed)[:-1])[self._samples]
-            for moved in (speeds_m_s, rates_rad_s)
-        ]
+        path = self._path(speeds_m_s * turned.per_speed)
         found = []
-        for measured, pieces in zip(self._measured, self._pieces, strict=True):
-            sums = np.add.reduceat(_distances(measured, paths, pieces), pieces.starts)
-            found.append((sums, pieces.counts))
+        each = zip(self._measured, self._pieces, turned.paths, strict=True)
+        for measured, pieces, turning in each:
+            distances = _distances(measured, _centred(path, pieces), turning, pieces)
+            found.append((np.add.reduceat(distances, pieces.starts), pieces.counts))
         return found
+
+    def _path(self, steps: ComplexArray) -> ComplexArray:
+        """Places (M,) of the positions, by the steps (N,) of the samples."""
+        return np.append(0.0, np.cumsum(steps)[:-1])[self._samples]
+
+
+class Turned(NamedTuple):
+    """Steps (N,) at a speed of 1 under some yaw rates, and for each length the path (M,) of these.
+
+    Paths are about the middle of each piece.
+    """
+
+    per_speed: ComplexArray
+    paths: list[ComplexArray]
 
 
 class _Pieces(NamedTuple):
@@ -103,10 +120,9 @@ class _Pieces(NamedTuple):
 
 
 def _distances(
-    measured: ComplexArray, paths: Sequence[ComplexArray], pieces: _Pieces
+    measured: ComplexArray, forward: ComplexArray, turning: ComplexArray, pieces: _Pieces
 ) -> FloatArray:
     """Between measured places (M,) and those of two paths, fitted to each piece."""
-    forward, turning = (_centred(path, pieces) for path in paths)
     turning = turning - _along(forward, turning, pieces)
     for part in (forward, turning):
         measured = measured - _along(part, measured, pieces)

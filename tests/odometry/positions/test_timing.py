@@ -10,8 +10,10 @@ from odometry.comparison.compare import _with_poses
 from odometry.comparison.config import ComparisonConfig
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
-from odometry.positions.timing import Timing, timings_of
+from odometry.positions.timing import OF_MEANING, PERIODS, TRIED_S, Timing, timings_of
 from odometry.run import Run
+from odometry.windows.recorded import gyroscope_yaw
+from odometry.windows.recorded.gyroscope_yaw import COARSE, FINE
 from tests.odometry.positions_drives import drive, emptied, table
 from tests.studies.identification.positions import emptied as without_yaw
 
@@ -133,3 +135,19 @@ def test_compare_reads_the_rates_of_all_runs_alike_and_leaves_out_what_has_no_pa
     expected = found_heading(noisy, Timing(0.0, timings_of([clear, noisy])[1].rates_early_s)).run
     assert np.array_equal(usable[1].pose["yaw"], expected.pose["yaw"], equal_nan=True)
     assert list(reasons) == ["short"]
+
+
+def test_yaw_rates_are_integrated_once_for_all_treads_that_are_late_beside_them(monkeypatch):
+    """That takes most of a check of long positions without yaw."""
+    integrated = []
+
+    def counted(rates, steps_s):
+        integrated.append(rates)
+        return per_speed(rates, steps_s)
+
+    per_speed = gyroscope_yaw._per_speed
+    monkeypatch.setattr(gyroscope_yaw, "_per_speed", counted)
+    run = emptied(drive(2, duration_s=40.0, gyroscope=True))
+    assert timings_of([run]) == (Timing(),)
+    of_bias, of_meanings = COARSE + FINE, len(OF_MEANING) * len(PERIODS)
+    assert len(integrated) == of_bias + len(PERIODS) * (len(TRIED_S) + 1) + of_meanings

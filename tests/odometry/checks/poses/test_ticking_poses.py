@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.findings.finding import Level
+from odometry.checks.poses.ticking_poses import TOGETHER, resultants_of
 from odometry.checks.recording import check_recording
 from tests.odometry.checks.drives import turning_all_round
 from tests.odometry.checks.faulty import frozen, jump, outliers, put
@@ -103,3 +104,13 @@ OTHERS = {
 def test_other_faults_are_no_beat(driven, change):
     found = {finding.name for finding in check_recording(change(driven)).findings}
     assert "ticking_poses" not in found
+
+
+@pytest.mark.parametrize("count", [1, 2, 100, 1601])
+def test_resultants_are_those_of_the_phases_at_each_frequency(count):
+    at_s = np.sort(np.random.default_rng(count).uniform(0, 300, 2 * TOGETHER + 3))
+    frequencies_hz = 0.1 + 0.001 * np.arange(count)
+    phases = 2 * np.pi * frequencies_hz[:, None] * at_s
+    expected = np.hypot(np.cos(phases).mean(axis=1), np.sin(phases).mean(axis=1))
+    found = resultants_of(at_s, 0.1, 0.001, count)
+    np.testing.assert_allclose(found, expected, atol=1e-10)

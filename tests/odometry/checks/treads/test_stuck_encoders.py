@@ -9,6 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.stuck_encoders import stuck_encoders
+from odometry.checks.turns.measured_turns import measured_turns
 from odometry.run import Run
 from odometry.run_span import Span, cut_run
 from tests.odometry.checks.drives import drive, winding
@@ -17,6 +18,12 @@ from tests.odometry.checks.faulty import SENSORS, held, limited, put
 
 def stuck(run):
     return list(stuck_encoders(Evidence(run)))
+
+
+def test_what_turns_are_measured_is_asked_once_for_all_times_in_which_a_tread_stands():
+    evidence = Evidence(winding())
+    pairs = zip(measured_turns(evidence), measured_turns(evidence), strict=True)
+    assert all(first is again for first, again in pairs)
 
 
 def straight_between_stands():

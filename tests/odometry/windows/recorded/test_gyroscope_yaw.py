@@ -38,7 +38,8 @@ def test_distances_of_pieces_are_those_of_least_squares():
     record = replace(record, breaks=breaks)
     speeds_m_s = record.inputs.tread_speeds_m_s.mean(axis=1)
     rates_rad_s = 0.3 * np.sin(0.2 * record.stamps_s)
-    ((sums_m, counts),) = PathShape(record, (LENGTH_M,)).of_pieces(speeds_m_s, rates_rad_s)
+    shape = PathShape(record, (LENGTH_M,))
+    ((sums_m, counts),) = shape.of_pieces(speeds_m_s, shape.turned(rates_rad_s))
 
     ahead, turning = _stepped(record.stamps_s, speeds_m_s, rates_rad_s)[:, record.pose_samples]
     travel_m = record.travel_m[record.pose_samples]
