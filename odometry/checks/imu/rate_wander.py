@@ -121,20 +121,24 @@ def _parts(evidence: Evidence, spans: HeadingSpans) -> Parts:
     """Numbers of the parts, and rows of the spans whose middles are in each, of enough time."""
     middle_s = (spans.start_s + spans.end_s) / 2
     number = ((middle_s - evidence.stamps_s[0]) / PART_S).astype(int)
-    rows = ((int(part), np.flatnonzero(number == part)) for part in np.unique(number))
-    return [(part, of) for part, of in rows if _independent(spans, of) >= 1]
-
-
-def _independent(spans: HeadingSpans, rows: IntArray) -> float:
-    """How many of the spans do not overlap."""
+    order = np.argsort(number, kind="stable")
+    present, first = np.unique(number[order], return_index=True)
+    rows = zip(present.tolist(), np.split(order, first[1:]), strict=True)
     step_s = median(np.diff(spans.start_s))
+    return [(part, of) for part, of in rows if _independent(spans, of, step_s) >= 1]
+
+
+def _independent(spans: HeadingSpans, rows: IntArray, step_s: float) -> float:
+    """How many of the spans do not overlap; one begins so long after another."""
     return min(len(rows) * step_s, PART_S) / median(spans.lasts_s[rows])
 
 
 def _noise(spans: HeadingSpans, rates: FloatArray, parts: Parts) -> float:
     """Standard deviation of the rate of a part, by how spans within it differ."""
+    step_s = median(np.diff(spans.start_s))
     squares = [
-        np.median(np.abs(rates[rows] - np.median(rates[rows]))) ** 2 / _independent(spans, rows)
+        np.median(np.abs(rates[rows] - np.median(rates[rows]))) ** 2
+        / _independent(spans, rows, step_s)
         for _, rows in parts
     ]
     return 1.4826 * float(np.sqrt(np.mean(squares)))

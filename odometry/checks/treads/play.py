@@ -66,8 +66,9 @@ def _unread(evidence: Evidence, turns: Turns, side: int) -> FloatArray | None:
         return None
     end_s = evidence.stamps_s[moving[turned + 1]]
     begin_s = np.maximum(evidence.stamps_s[moving[turned]], end_s - LONGEST_S)
-    first_s, last_s = turns.start_s[:, None], (turns.start_s + turns.lasts_s)[:, None]
-    both_s = np.minimum(last_s, end_s) - np.maximum(first_s, begin_s)
-    shares = np.maximum(both_s, 0.0) / (end_s - begin_s) * signs[turned + 1]
-    unread = np.sum(shares, axis=1)
+    edges_s = np.stack([begin_s, end_s], axis=-1).ravel()  # each begins where the last one ended
+    passed = np.repeat(np.append(0.0, np.cumsum(signs[turned + 1])), 2)[1:-1]
+    ends_s = turns.start_s, turns.start_s + turns.lasts_s
+    first, last = (np.interp(at_s, edges_s, passed) for at_s in ends_s)
+    unread = last - first
     return unread if unread.any() else None
