@@ -14,6 +14,7 @@ from odometry.arrays import FloatArray
 from odometry.models.contact_stance import INSIDE, Stance, load_shares
 from odometry.models.inertia_model import G_M_S2
 
+IN_ROWS = np.array([[0, 1, 3], [1, 2, 4], [3, 4, 5]])  # of a symmetric matrix by its six entries
 TIPPING = 0.95  # of the way to the edge of the base: where the centre of pressure is held
 
 
@@ -84,16 +85,16 @@ class Balance:
 
     def by_shift(self, change: FloatArray) -> FloatArray:
         """Change (3, ..., N) when the centre of pressure moves (2, ..., N), held at the edge."""
-        at_edge = self.edge[0] * change[0] + self.edge[1] * change[1]
-        along, across = (
-            part - heading * at_edge for part, heading in zip(change, self.heading, strict=True)
+        edge, heading, by_centre = (
+            _beside(of, change) for of in (self.edge, self.heading, self.by_centre)
         )
-        return np.asarray([by[0] * along + by[1] * across for by in self.by_centre])
+        along, across = change - heading * (edge[0] * change[0] + edge[1] * change[1])
+        return np.asarray(by_centre[:, 0] * along + by_centre[:, 1] * across)
 
     def by_pull(self, change: FloatArray) -> FloatArray:
         """Change (3, ..., N) when the pull changes (2, ..., N): its own wrench, and the loads."""
-        moved = [lever * part for lever, part in zip(self._levers, change, strict=True)]
-        return self.by_shift(np.asarray(moved)) + wrench(change, self.stance.centre_m)
+        moved = _beside(self._levers, change) * change
+        return self.by_shift(moved) + wrench(change, self.stance.centre_m)
 
     @cached_property
     def _levers(self) -> FloatArray:
@@ -121,13 +122,8 @@ class Balance:
         xx, xy = stiffness * (1 - ahead * ahead), -stiffness * ahead * aside
         yy = stiffness * (1 - aside * aside)
         x_turn, y_turn = x * xy - y * xx, x * yy - y * xy
-        derivative = np.empty((3, 3, len(self.omega)))
-        derivative[0, 0], derivative[1, 1] = xx.sum(axis=0), yy.sum(axis=0)
-        derivative[0, 1] = derivative[1, 0] = xy.sum(axis=0)
-        derivative[0, 2] = derivative[2, 0] = x_turn.sum(axis=0)
-        derivative[1, 2] = derivative[2, 1] = y_turn.sum(axis=0)
-        derivative[2, 2] = (x * y_turn - y * x_turn).sum(axis=0)
-        return derivative
+        parts = np.stack([xx, xy, yy, x_turn, y_turn, x * y_turn - y * x_turn])
+        return np.asarray(parts.sum(axis=1)[IN_ROWS])
 
 
 def balance_at(stance: Stance, twist: FloatArray) -> Balance:
@@ -137,7 +133,7 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
     x_cm, y_cm = stance.centre_m
     left, right = stance.tread_speeds_m_s
     tread = np.where(stance.layout.places[2] > 0, left, right)
-    slip = np.array([v_x - omega * y - tread, v_y + omega * x])
+    slip = np.stack([v_x - omega * y - tread, v_y + omega * x])
     resistance = 1 / np.sqrt(slip[0] ** 2 + slip[1] ** 2 + stance.slip_scale_m_s**2)
     contact_wrenches = wrench(-stance.mu * resistance * slip, stance.places_m)
     centre_speeds = np.array([v_x - omega * y_cm, v_y + omega * x_cm])  # Martinez 2017 eq. 9-10
@@ -146,7 +142,7 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
     shift = stance.height_m * pull / (stance.normal * stance.base_m)
     reach, edge, heading = _held_within_base(stance.centre, shift)
     shares, slopes = load_shares(stance.centre + reach * shift, stance.layout)
-    by_centre = np.stack([np.sum(slope * contact_wrenches, axis=1) for slope in slopes], axis=1)
+    by_centre = (contact_wrenches[:, None] * slopes).sum(axis=2)
     return Balance(
         stance,
         omega,
@@ -166,7 +162,15 @@ def balance_at(stance: Stance, twist: FloatArray) -> Balance:
 
 def wrench(force: FloatArray, place_m: FloatArray) -> FloatArray:
     """Forces (2, ...) at places (2, ...) with their moments about the origin: (3, ...)."""
-    return np.array([force[0], force[1], place_m[0] * force[1] - place_m[1] * force[0]])
+    found = np.empty((3, *force.shape[1:]))
+    found[:2] = force
+    np.subtract(place_m[0] * force[1], place_m[1] * force[0], out=found[2])
+    return found
+
+
+def _beside(of: FloatArray, change: FloatArray) -> FloatArray:
+    """What samples (..., N) have, beside changes (2, ..., N) of which each has several."""
+    return of.reshape(*of.shape[:-1], *(1,) * (change.ndim - 2), of.shape[-1])
 
 
 def _held_within_base(

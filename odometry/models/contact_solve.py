@@ -119,8 +119,10 @@ def _step(stance: Stance, force: FloatArray, matrix: FloatArray, damping: FloatA
     speed = np.abs(stance.tread_speeds_m_s).max(axis=0) + stance.slip_scale_m_s
     radius = np.hypot(*stance.base_m)
     damped = -matrix
-    for axis, metric in enumerate((1.0, 1.0, radius**2)):
-        damped[axis, axis] += damping * metric * stance.mu / speed
+    resisted = damping * stance.mu / speed
+    damped[0, 0] += resisted
+    damped[1, 1] += resisted
+    damped[2, 2] += damping * radius**2 * stance.mu / speed
     step = solve_3x3(damped, force)
     length = np.sqrt(step[0] ** 2 + step[1] ** 2 + (radius * step[2]) ** 2)
     return np.asarray(step / np.maximum(1.0, length / (LONGEST_STEP * speed)))
