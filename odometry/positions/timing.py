@@ -102,8 +102,8 @@ class _Compared:
 
     def __init__(self, record: Record, rates_rad_s: FloatArray) -> None:
         self._record = record
-        self._rates = rates_rad_s
-        self._speeds = record.inputs.tread_speeds_m_s.mean(axis=1)
+        self._travel_m = _summed(record, record.inputs.tread_speeds_m_s.mean(axis=1))
+        self._turns_rad = _summed(record, rates_rad_s)
         self._early_s = [periods * _period_s(record) for periods in PERIODS]
         self._shape = PathShape(record, LENGTHS_M)
         self._logs = np.array([self._logs_of(early_s) for early_s in self._early_s])
@@ -157,10 +157,10 @@ class _Compared:
 
     def _driven(self, late_s: float) -> FloatArray:
         """Mean tread speeds (N,), later by a time."""
-        return _delayed(self._record, self._speeds, late_s)
+        return _delayed(self._record, self._travel_m, late_s)
 
     def _turned(self, late_s: float) -> Turned:
-        return self._shape.turned(_delayed(self._record, self._rates, late_s))
+        return self._shape.turned(_delayed(self._record, self._turns_rad, late_s))
 
 
 def _period_s(record: Record) -> float:
@@ -168,9 +168,12 @@ def _period_s(record: Record) -> float:
     return 0.0 if rates is None else usual_period_s(rates.stamps_s)
 
 
-def _delayed(record: Record, rates: FloatArray, late_s: float) -> FloatArray:
-    """Rates (N,) in force from each stamp on, later by some time; means up to the next stamp."""
-    steps_s = np.diff(record.stamps_s)
-    summed = np.append(0.0, np.cumsum(rates[:-1] * steps_s))
+def _summed(record: Record, rates: FloatArray) -> FloatArray:
+    """Sums (N,) up to each stamp of rates (N,) in force from each stamp on."""
+    return np.append(0.0, np.cumsum(rates[:-1] * np.diff(record.stamps_s)))
+
+
+def _delayed(record: Record, summed: FloatArray, late_s: float) -> FloatArray:
+    """Rates (N,) of sums, later by some time; means up to the next stamp."""
     moved = np.interp(record.stamps_s - late_s, record.stamps_s, summed)
-    return np.append(np.diff(moved) / steps_s, 0.0)
+    return np.append(np.diff(moved) / np.diff(record.stamps_s), 0.0)
