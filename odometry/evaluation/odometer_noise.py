@@ -51,7 +51,7 @@ USUAL_NOISE = OdometerNoise(
     np.square([0.14, 0.05]),
     stretches=0,
     longest_m=0.0,
-)  # means without least shares, equal for x and y, of 19 recordings (studies/odometer_noise.py)
+)  # means without least shares, equal for x and y, of 19 recordings (main_job/odometer_noise.py)
 NOISE_WITHOUT_POSES = replace(
     USUAL_NOISE, variances=2 * USUAL_NOISE.variances
 )  # twice the usual: NEES of 24 recordings over 2 to 50 m is then 3 in the mean

@@ -13,7 +13,7 @@ import pytest
 
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 
-STUDY = Path(__file__).parents[1] / "studies" / "auriga.py"
+STUDY = Path(__file__).parents[1] / "studies" / "identification" / "auriga.py"
 
 
 @pytest.fixture(scope="module")
