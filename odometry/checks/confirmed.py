@@ -34,6 +34,7 @@ TRIED_ALONE = frozenset(
         "yaw_late",
         "positions_late",
         "clocks_apart",
+        "latency_changes",
         "clock_set",
         "gyroscope_late",
         "treads_late",

@@ -35,6 +35,7 @@ from odometry.checks.poses.yaw_drift import yaw_drifts
 from odometry.checks.settings.settings import columns, settings
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
 from odometry.checks.stamps.bursts import spread_bursts
+from odometry.checks.stamps.changing_latency import changing_latency
 from odometry.checks.stamps.clock_offsets import clock_offsets
 from odometry.checks.stamps.empty_cells import empty_cells
 from odometry.checks.stamps.explained_lags import explained_lags
@@ -114,6 +115,7 @@ CHECKS: tuple[Check, ...] = (
     smoothed_treads,
     gaps,
     silent_rows,
+    changing_latency,
     stepping_clocks,
     clock_offsets,
     explained_lags,

@@ -1,12 +1,18 @@
 """Poses whose stamps are late: by a delay that is given, or by one that is certain."""
 
+import numpy as np
+
+from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
+from odometry.checks.findings.undo import restamped
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.late_positions import path_delay_s
+from odometry.checks.stamps.latencies import PAIRS, Changing, changing
 from odometry.checks.stamps.short_delay import short_delay
 from odometry.checks.stamps.timing import found_in, lags_of, timing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
+from odometry.preparation.row_rates import EARLY_S
 from odometry.run import Run, with_stamps
 from odometry.table import Table
 
@@ -46,6 +52,9 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
 
 def _searched(run: Run, pose: Table) -> Moved:
     evidence = Evidence(run)
+    change = changing(evidence)
+    if change is not None:
+        return _along(run, pose, change)
     named = list(explained_lags(evidence))
     for part in named:
         if part.name in PARTS and part.mend is not None:
@@ -59,6 +68,25 @@ def _searched(run: Run, pose: Table) -> Moved:
         return run, ()
     text = f"by {late_s:.3f} s against the path of treads and gyroscope"
     return _moved(run, pose, late_s, text)
+
+
+def _along(run: Run, pose: Table, change: Changing) -> Moved:
+    """Stamps less a latency that changes, where it is that of the poses behind the gyroscope.
+
+    By which poses are usually earlier than the gyroscope, they stay so.
+    """
+    if change.pair != PAIRS[0] or change.sensor != "pose":
+        return run, ()
+
+    def late_s(stamps_s: FloatArray) -> FloatArray:
+        return change.late_s(stamps_s) + EARLY_S
+
+    by_s = late_s(pose.stamps_s)
+    text = (
+        f"the poses are late by a time that changes, {by_s.min():.3f} to {by_s.max():.3f} s beside "
+        "the gyroscope; they were taken at the stamps at which they were measured"
+    )
+    return restamped("pose", late_s)(run), (_event(pose, text, float(np.median(by_s))),)
 
 
 def _certain_delay_s(evidence: Evidence, named: set[str]) -> float | None:

@@ -116,6 +116,7 @@ CATALOGUE: dict[str, str] = {
     "yaw_late": "yaw late or early, beside positions that are on time",
     "positions_late": "positions late or early, beside a yaw that is on time",
     "clocks_apart": "clocks that run apart",
+    "latency_changes": "stamps late by a time that drifts, wanders or grows",
     "poses_unrelated": "poses of another recording",
     "poses_are_wheel_odometry": "poses computed from these treads",
     # Gyroscope, attitude

@@ -160,6 +160,9 @@ CONSEQUENCES: dict[str, frozenset[str]] = {
         {"gyroscope_unit", "pose_late", "treads_late", "pose_jumps", "poses_unrelated"}
         | {"slip_episodes", "treads_frozen"}
     ),
+    "latency_changes": OF_OTHER_TIMES
+    | {"gyroscope_unit", "poses_unrelated", "slip_episodes", "treads_frozen", "gyroscope_dead"}
+    | {"tread_late", "yaw_jumps", "yaw_late", "positions_late"},
     "stuck_encoder": OF_LOST,
     "slow_speeds_zero": OF_LOST
     | {"dropped_speeds", "turn_blocked", "turns_at_rest", "straight_drives", "treads_frozen"},

@@ -10,6 +10,7 @@ from odometry.run import Run
 from odometry.table import Table
 
 Mend = Callable[[Run], Run]
+Course = Callable[[FloatArray], FloatArray]
 TREADS = ("v_left", "v_right")
 
 
@@ -65,14 +66,18 @@ def gyroscope_times(run: Run, factor: float) -> Mend:
     return times("imu", factor, *axes)
 
 
-def sooner(names: tuple[str, ...], seconds: float) -> Mend:
-    """Columns of odometry.csv as they were so much later, at the stamps as they are."""
+def sooner(names: tuple[str, ...], seconds: float | Course) -> Mend:
+    """Columns of odometry.csv as they were so much later, at the stamps as they are.
+
+    `seconds` may be a function of stamps (N,) to (N,).
+    """
 
     def mend(run: Run) -> Run:
         t = run.odometry.stamps_s
+        by_s = seconds(t) if callable(seconds) else seconds
 
         def at_once(values: FloatArray) -> FloatArray:
-            return np.asarray(np.interp(t + seconds, t, values))
+            return np.asarray(np.interp(t + by_s, t, values))
 
         return in_turn(*(changed("odometry", name, at_once) for name in names))(run)
 
@@ -126,6 +131,20 @@ def stamps_moved(table: str, after_s: float, by_s: float) -> Mend:
         columns = {name: values[kept] for name, values in of.columns.items()}
         rows = of.rows(np.flatnonzero(kept))
         return replace(run, **{table: replace(rows, columns={**columns, "t": new_s[kept]})})
+
+    return mend
+
+
+def restamped(table: str, late_s: Course) -> Mend:
+    """Stamps of one table less a function of them, without rows that are no later than others."""
+
+    def mend(run: Run) -> Run:
+        of = getattr(run, table)
+        new_s = of.stamps_s - late_s(of.stamps_s)
+        latest_s = np.maximum.accumulate(np.append(-np.inf, new_s[:-1]))
+        rows = np.flatnonzero(new_s > latest_s)
+        kept = of.rows(rows)
+        return replace(run, **{table: replace(kept, columns={**kept.columns, "t": new_s[rows]})})
 
     return mend
 

@@ -8,9 +8,11 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.evidence.motion import WINDOW_S
 from odometry.checks.findings.finding import Finding, disagreement
+from odometry.checks.stamps.changing_latency import runs_apart
 from odometry.checks.stamps.held_treads import held_treads
 from odometry.checks.stamps.late_positions import apart_from_yaw
 from odometry.checks.stamps.late_stamps import one_side_alone
+from odometry.checks.stamps.latencies import changing
 from odometry.checks.stamps.one_delay import answers, is_one_delay
 from odometry.checks.stamps.parts_of_poses import late_part, turns_in_step, yaw_late
 from odometry.checks.stamps.set_clocks import step_of_lag
@@ -41,6 +43,9 @@ def explained_lags(evidence: Evidence) -> Iterator[Finding]:
 
     Stamps that are late make both positions and yaw late, both treads, and their turns and way.
     """
+    change = changing(evidence)
+    if change is not None and not runs_apart(evidence, change):
+        return  # no constant one
     lags = lags_of(evidence)
     found = list(found_in(evidence, lags))
     apart: str | None = None

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
+from odometry.checks.stamps.latencies import changing
 from odometry.checks.stamps.timing import CERTAIN, TOGETHER, found_in, lags_of, pose_period_s
 from odometry.checks.statistics.lag import Lag
 
@@ -18,7 +19,7 @@ def slightly_late(evidence: Evidence) -> Iterator[Finding]:
     """A note on late poses where nothing else is late."""
     lags = lags_of(evidence)
     lag = short_delay(evidence, lags)
-    if lag is None or any(found_in(evidence, lags)):
+    if lag is None or any(found_in(evidence, lags)) or changing(evidence):
         return
     yield Finding(
         "pose_late",

@@ -10,6 +10,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import stamps_moved
 from odometry.checks.stamps.late_stamps import CLEARLY
+from odometry.checks.stamps.latencies import changing
 from odometry.checks.stamps.rates_by_delay import (
     PARTS,
     left_by_any_growing,
@@ -18,6 +19,7 @@ from odometry.checks.stamps.rates_by_delay import (
 )
 from odometry.checks.stamps.set_clocks import left_by_delays
 from odometry.checks.stamps.timing import headings_by_sensor
+from odometry.checks.statistics.latency_course import STEP
 from odometry.checks.statistics.measured_between import gaps_between
 
 DELAYS_S = np.arange(-2.5, 2.51, 0.05)
@@ -52,8 +54,12 @@ class Step:
 def stepping_clocks(evidence: Evidence) -> Iterator[Finding]:
     """A lag between two files that is one before a moment and another after it.
 
-    Lags that grow, and turns that differ otherwise, are not explained by one step.
+    Lags that grow, and turns that differ otherwise, are not explained by one step. Nor are
+    those of which pieces of the recording show another course.
     """
+    change = changing(evidence)
+    if change is not None and change.course.kind != STEP:
+        return
     files = {"pose": "pose.csv", "gyroscope": evidence.gyroscope_file, "treads": "odometry.csv"}
     pairs = [pair for pair in _apart(evidence) if files[pair[0]] != files[pair[1]]]
     steps = [step for pair in pairs if (step := _step(evidence, pair)) is not None]

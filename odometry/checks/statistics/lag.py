@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,7 +17,7 @@ LEAST_CORRELATION = 0.7
 RIVAL = 0.9  # a second peak as high as this share of the first: the motion is periodic
 LEAST_SIZE = 1e-9  # of the product of both; smaller ones stand still
 LEAST_SHARE = 1e-12  # of the squares, that are left of the mean: less is their rounding
-PIECES = 8
+PIECES, FEWEST = 8, 3
 LEAST_PIECE_S = 8.0
 TOGETHER_S, CUTOFF = 0.15, 4.0  # seconds, or standard deviations, from the line through the pieces
 
@@ -47,6 +48,15 @@ class Lag:
     together: float
 
 
+class Lags(NamedTuple):
+    """Lags (P,) of pieces around their middles, standard deviations, and correlations."""
+
+    middles_s: FloatArray
+    lags_s: FloatArray
+    sigmas_s: FloatArray
+    correlations: FloatArray
+
+
 def lag_between(
     late: Signal, early: Signal, span_s: tuple[float, float], width_s: float, most_s: float
 ) -> Lag | None:
@@ -73,7 +83,17 @@ def lag_of_rates(
         Largest lag searched for, to both sides.
     """
     count = int(np.clip((span_s[1] - span_s[0]) / LEAST_PIECE_S, 1, PIECES))
-    edges_s = np.linspace(span_s[0], span_s[1], count + 1)
+    found = lags_in_pieces(late, early, np.linspace(*span_s, count + 1), width_s, most_s)
+    return _summarised(found) if len(found.lags_s) >= FEWEST else None
+
+
+def lags_in_pieces(
+    late: Rate, early: Rate, edges_s: FloatArray, width_s: float, most_s: float
+) -> Lags:
+    """The lags of `late` behind `early` in the pieces between some stamps, where a peak is clear.
+
+    As in `lag_of_rates`, with the edges (P + 1,) of the pieces.
+    """
     lags, middles, correlations, sigmas = [], [], [], []
     for begin_s, stop_s in pairwise(edges_s.tolist()):
         found = _peak(late, early, (begin_s, stop_s), width_s, most_s)
@@ -82,9 +102,7 @@ def lag_of_rates(
             correlations.append(found[1])
             sigmas.append(_peak_sigma_s(found[1], stop_s - begin_s, width_s))
             middles.append((begin_s + stop_s) / 2)
-    if len(lags) < 3:
-        return None
-    return _summarised(np.array(lags), np.array(middles), np.array(correlations), np.array(sigmas))
+    return Lags(*(np.array(of) for of in (middles, lags, sigmas, correlations)))
 
 
 def _peak(
@@ -163,10 +181,9 @@ def _peak_sigma_s(correlation: float, lasts_s: float, width_s: float) -> float:
     return float(width_s * np.sqrt(noise * width_s / lasts_s))
 
 
-def _summarised(
-    lags: FloatArray, middles: FloatArray, correlations: FloatArray, sigmas: FloatArray
-) -> Lag:
+def _summarised(found: Lags) -> Lag:
     """Median lag, and a line through the pieces by the medians of slopes (Theil and Sen)."""
+    middles, lags, sigmas, correlations = found
     i, j = np.triu_indices(len(lags), 1)
     drift = float(np.median((lags[j] - lags[i]) / (middles[j] - middles[i])))
     left = lags - np.median(lags) - drift * (middles - np.median(middles))
