@@ -7,7 +7,7 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS, Mend, restamped, sooner
-from odometry.checks.stamps.late_stamps import NAMES
+from odometry.checks.stamps.late_stamps import MADE_UP, NAMES, are_even
 from odometry.checks.stamps.latencies import Changing, changing
 from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from odometry.checks.stamps.timing import drifting, lags_of
@@ -35,8 +35,10 @@ def runs_apart(evidence: Evidence, found: Changing) -> bool:
 def _finding(evidence: Evidence, found: Changing) -> Finding:
     course, pair = found.course, found.pair
     late, early = (NAMES[name] for name in pair)
-    who = NAMES[found.odd] if found.odd else f"{late} or of {early}"
-    more = UNDECIDED * (not found.odd) + SLIP * ("treads" in (found.odd or pair))
+    who = " or of ".join(NAMES[name] for name in found.suspects)
+    more = UNDECIDED * (not found.odd)
+    if "treads" in found.suspects:
+        more += SLIP + MADE_UP * are_even(evidence)
     steps = course.kind == STEP
     is_clock = steps and _of_two_files(evidence, pair)
     clock = "a clock that was set while recording, or " * is_clock

@@ -101,13 +101,13 @@ def clocks_apart(evidence: Evidence, drifting: dict[tuple[str, str], Lag]) -> Fi
         f"+- {1000 * lag.drift_sigma:.2f} ms per second "
         f"({lag.drift * evidence.duration_s:+.2f} s over the recording)",
         f"Clocks run apart: that of the {NAMES[odd]} has a drift of {100 * lag.drift:+.2f} % "
-        "against the other" + MADE_UP * (odd == "pose" and lag.drift > 0 and _are_even(evidence)),
+        "against the other" + MADE_UP * (odd == "pose" and lag.drift > 0 and are_even(evidence)),
         "Stamp all files by one clock (log time, or clocks that are synchronised)",
         mend=mend,
     )
 
 
-def _are_even(evidence: Evidence) -> bool:
+def are_even(evidence: Evidence) -> bool:
     """Whether all rows of odometry.csv are equally far apart, as no clock measures them."""
     return bool(np.ptp(np.diff(evidence.stamps_s)) < EVEN * evidence.period_s)
 

@@ -38,9 +38,14 @@ class Changing:
     odd: str
 
     @property
+    def suspects(self) -> tuple[str, ...]:
+        """The odd one, or both of the pair."""
+        return (self.odd,) if self.odd else self.pair
+
+    @property
     def sensor(self) -> str:
         """The odd one, or the first where that cannot be determined."""
-        return self.odd or self.pair[0]
+        return self.suspects[0]
 
     def late_s(self, stamps_s: FloatArray) -> FloatArray:
         """How late the stamps (N,) of the sensor are, against the other one of the pair."""

@@ -15,12 +15,13 @@ from odometry.checks.statistics.lag import Lags
 
 CONSTANT, LINE, STEP, COURSE = "constant", "line", "step", "course"
 OWN_S = 0.02  # by which lags of pieces of good recordings differ though noise explains less
-FEWEST, AT_EDGE = 6, 2  # pieces; at either end of a recording no step is searched for
+FEWEST, AT_EDGE = 6, 2  # pieces, and of them that a change at either end has at least
+ALONE = 5.0  # times the usual difference of neighbours
 # By which a step must be better than what changes slowly: "strong" (Kass and Raftery 1995). Of 40
 # steps that were made 37 were better by as much, of 12 other courses three.
 STRONGLY = 6.0
 KNOTS = (3, 4, 5, 7, 9, 13, 17)
-PER_KNOT = 2  # pieces
+PER_KNOT = 3  # pieces
 HUBER, ROUNDS = 1.5, 8
 
 
@@ -75,11 +76,13 @@ class _Fit:
     def score(self, pieces: int) -> float:
         """Schwarz's criterion, with what few pieces lack (Hurvich and Tsai 1989)."""
         few = pieces / max(pieces - self.unknowns - 1, 1)
-        return float(pieces * np.log(self.chi2 / pieces) + self.unknowns * np.log(pieces) * few)
+        variance = max(self.chi2 / pieces, 1.0)  # none is less than lags have of their own
+        return float(pieces * np.log(variance) + self.unknowns * np.log(pieces) * few)
 
 
 def latency_course(lags: Lags) -> LatencyCourse | None:
     """The likeliest course of a latency; None of too few pieces."""
+    lags = _confirmed(lags)
     count = len(lags.lags_s)
     if count < FEWEST:
         return None
@@ -103,6 +106,16 @@ def latency_course(lags: Lags) -> LatencyCourse | None:
     )
 
 
+def _confirmed(lags: Lags) -> Lags:
+    """The pieces with a lag like that of a neighbour: one piece alone shows no change."""
+    if len(lags.lags_s) < FEWEST:
+        return lags
+    apart_s = np.abs(np.diff(lags.lags_s))
+    near = apart_s < ALONE * max(float(np.median(apart_s)), OWN_S)
+    kept = np.append(near, False) | np.append(False, near)
+    return Lags(*(of[kept] for of in lags))
+
+
 def _shapes(stamps_s: FloatArray) -> Iterator[tuple[str, FloatArray, int, float]]:
     """Name, columns (K, C), unknowns and moment of what is tried; the constant first."""
     count, one = len(stamps_s), np.ones(len(stamps_s))
@@ -113,8 +126,9 @@ def _shapes(stamps_s: FloatArray) -> Iterator[tuple[str, FloatArray, int, float]
         later = (np.arange(count) >= row).astype(float)
         moment_s = float(stamps_s[row - 1 : row + 1].mean())
         yield STEP, np.stack([one, later], axis=1), 3, moment_s
+    for place in along[AT_EDGE : count - AT_EDGE]:
         for side in (-1, 1):
-            turned = np.maximum(side * (along - along[row - 1]), 0)
+            turned = np.maximum(side * (along - place), 0)
             yield COURSE, np.stack([one, turned], axis=1), 3, np.nan
     for knots in KNOTS:
         if count >= PER_KNOT * knots:

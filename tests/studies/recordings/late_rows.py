@@ -60,6 +60,22 @@ def wait(t, rng, mean_s, share=1.0):
     return rng.exponential(mean_s, len(t)) * (rng.random(len(t)) < share)
 
 
+def from_a_moment(t, rng):
+    """Seconds since a moment in the first half, and the seconds left then."""
+    begin_s = rng.uniform(0.05, 0.5) * np.ptp(t)
+    return np.maximum(t - t[0] - begin_s, 0), np.ptp(t) - begin_s
+
+
+def grows(t, rng, most_s):
+    since_s, left_s = from_a_moment(t, rng)
+    return t + most_s * since_s / left_s
+
+
+def fills(t, rng, most_s):
+    since_s, left_s = from_a_moment(t, rng)
+    return t + most_s * (1 - np.exp(-since_s / (rng.uniform(0.1, 0.3) * left_s)))
+
+
 def cut_off(t, steps):
     """The stamps in so many steps a second."""
     return np.floor(np.round(steps * t, 6)) / steps
@@ -94,6 +110,11 @@ FAULTS = {
     "whole s": lambda t, _: cut_off(t, 1),
     "rounded to s": lambda t, _: np.round(t),
     "whole s, 120 ms late": lambda t, rng: cut_off(in_order(t + wait(t, rng, 0.12)), 1),
+    "grows to 0.15 s": lambda t, rng: grows(t, rng, 0.15),
+    "grows to 0.5 s": lambda t, rng: grows(t, rng, 0.5),
+    "fills to 0.3 s": lambda t, rng: fills(t, rng, 0.3),
+    "a clock 0.3 % fast from a moment": lambda t, rng: t + 0.003 * from_a_moment(t, rng)[0],
+    "steps by 0.3 s": lambda t, rng: t + 0.3 * (t - t[0] > rng.uniform(0.2, 0.8) * np.ptp(t)),
     "0.3 s by turns, each 2 min": lambda t, _: t + 0.15 * (1 - np.cos(2 * np.pi * t / 120)),
 }
 

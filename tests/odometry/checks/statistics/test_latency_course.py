@@ -50,7 +50,20 @@ def test_the_moment_of_a_step_lies_between_its_pieces():
 def test_pieces_far_off_change_little():
     off = TRUE[LINE].copy()
     off[[3, 17]] = 2.0, -1.5
-    np.testing.assert_allclose(latency_course(lags(off)).seconds, TRUE[LINE], atol=0.03)
+    np.testing.assert_allclose(latency_course(lags(off)).at(AT_S), TRUE[LINE], atol=0.03)
+
+
+@pytest.mark.parametrize("piece", [0, 13, len(AT_S) - 1])
+def test_one_piece_makes_no_course(piece):
+    off = TRUE[CONSTANT].copy()
+    off[piece] += 1.1
+    assert latency_course(lags(off, noise_s=0.005)).gain < 10
+
+
+def test_noise_is_no_less_than_lags_have_of_their_own():
+    """Eight pieces that lie on a curve by chance."""
+    eight = Lags(*(of[:8] for of in lags(np.interp(AT_S, [4, 20, 60], [-0.06, 0.03, 0]), 0, 0.001)))
+    assert latency_course(eight).gain < 10
 
 
 def test_few_pieces_have_no_course():
