@@ -16,8 +16,10 @@ EDGE_M_S = 0.005  # over which a command begins to act: samples there have a der
 EDGE = 0.1  # share of the least speed that acts, where that is less
 BLURRED_M_S = 0.01  # by noise of the recorded speeds, a deadband
 HARDEST_M_S2 = 20.0
-HIGHEST_LEAST_M_S = 1.0
+HIGHEST_LEAST_M_S, HIGHEST_LEAST = 1.0, 0.5  # or this share of a fastest speed above 2 m/s
 STARTS_M_S = (*(0.02, 0.04, 0.06, 0.09, 0.12, 0.15, 0.18, 0.21, 0.25), *(0.3, 0.36, 0.43, 0.5, 0.6))
+FASTER = 1.2  # from one start to the next beyond these, up to NEAR of the highest
+NEAR = 0.7
 
 
 class DriveLimit(CommandEffect):
@@ -47,30 +49,50 @@ class ScaledLimit(DriveLimit):
 
 
 class Deadband(ScaledLimit):
-    """Commands below a speed move nothing; others act in full."""
+    """Commands below a speed move nothing; others act in full.
+
+    Parameters
+    ----------
+    crawls : float
+        As of all `ScaledLimit`.
+    highest_m_s : float
+        Up to which it is searched.
+    """
 
     form = "deadband"
     in_words = "commands too small to move the robot"
     equation = "v -> 0 where |v| < least"
     looks_like = "a robot that stands, or turns about one tread, where a slow motion was commanded"
 
+    def __init__(self, crawls: float = 1.0, highest_m_s: float = HIGHEST_LEAST_M_S) -> None:
+        super().__init__(crawls)
+        self.highest_m_s = highest_m_s
+
+    @classmethod
+    def offered(cls, recorded: Recorded) -> tuple[Effect, ...]:
+        """At the speeds that were recorded."""
+        highest_m_s = max(HIGHEST_LEAST_M_S, HIGHEST_LEAST * recorded.fastest_m_s)
+        return (cls(crawling(recorded.fastest_m_s), highest_m_s),)
+
     @property
     def parameters(self) -> tuple[EffectParameter, ...]:
         """See `Effect.parameters`."""
         start, scale = self.crawls * 0.05, self.crawls * 0.005
         return (
-            EffectParameter("least", "m/s", 0.0, HIGHEST_LEAST_M_S, start, scale, in_steps=True),
+            EffectParameter("least", "m/s", 0.0, self.highest_m_s, start, scale, in_steps=True),
         )
 
     def starts(self, inputs: Inputs, base: Base) -> FloatArray:  # noqa: ARG002 - of the interface
         """See `Effect.starts`: near enough to each other for a cost that has steps."""
-        return self.crawls * np.array(STARTS_M_S)[:, None]
+        further = np.log(NEAR * self.highest_m_s / STARTS_M_S[-1]) / np.log(FASTER)
+        faster = STARTS_M_S[-1] * FASTER ** np.arange(1, np.floor(further) + 1)
+        return self.crawls * np.append(STARTS_M_S, faster)[:, None]
 
     def resolution(self, values: FloatArray, inputs: Inputs) -> FloatArray:
         """See `Effect.resolution`: up to the nearest commands below and above."""
         off = np.append(np.abs(inputs.tread_speeds_m_s).ravel(), 0.0) - values[0]
         below, above = -off[off <= 0], off[off > 0]
-        farthest = max(below.min(), above.min(initial=HIGHEST_LEAST_M_S - values[0]))
+        farthest = max(below.min(), above.min(initial=self.highest_m_s - values[0]))
         return np.array([max(farthest, self.crawls * BLURRED_M_S)])
 
     def tread_speeds(self, values: FloatArray, inputs: Inputs) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What is searched on slow robots: bounds and starts follow the speeds that were recorded."""
+"""What is searched on slow and fast robots: bounds and starts follow the recorded speeds."""
 
 import numpy as np
 import pytest
@@ -31,6 +31,14 @@ def test_a_deadband_is_searched_near_any_share_of_the_fastest_speed(share, bench
     effect, inputs = offered(Deadband, bench, FASTEST_M_S)
     starts = effect.starts(inputs, bench.base)[:, 0]
     assert np.abs(starts / (share * FASTEST_M_S) - 1).min() < 0.3
+
+
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.3, 0.4])
+def test_a_deadband_of_a_fast_robot_is_searched_up_to_half_of_its_speed(share, bench):
+    effect, inputs = offered(Deadband, bench, 4.0)
+    starts = effect.starts(inputs, bench.base)[:, 0]
+    assert np.abs(starts / (share * 4.0) - 1).min() < 0.3
+    assert starts.max() < effect.parameters[0].high == 2.0
 
 
 def test_a_slow_deadband_is_as_sharp_and_as_well_known_as_a_fast_one(bench):
