@@ -12,7 +12,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form import names_alone, of_their_form
 from odometry.gap.name.form_gates import is_special, is_the_main_part
 from odometry.gap.name.in_calibration import is_new
-from odometry.gap.name.left_by_names import structure_left, that_last
+from odometry.gap.name.left_by_names import by_themselves, structure_left, that_last
 from odometry.gap.name.near_rivals import undecided
 from odometry.gap.name.search import Search
 from odometry.gap.name.sudden import is_gradual_wheel_scale, sudden_instead, sudden_wheels
@@ -103,12 +103,15 @@ class Standing(Search):
     def _for_itself(self, found: Explanation, smooth: Sequence[Residual]) -> Explanation:
         """Without names beside a smooth function that others equal, or more such alone beat.
 
+        Beside names that last and leave no gap nothing is unknown: others may equal these.
         Forces of contacts, which are right and imperfect, give way to the others alone.
         """
         names = [effect for effect in found.effects if not isinstance(effect, Residual)]
         if not names or len(names) == len(found.effects):
             return found
         reason = undecided(found, self.fitter, self.config)
+        if reason and (by_names := by_themselves(self, found)):
+            return self._standing(by_names, smooth)
         if not reason and any(name.slow for name in names):
             return found
         alone = grown(self, found)
@@ -210,18 +213,12 @@ class Standing(Search):
         believed = self.fitter.calibration.base
         less_base = replace(fit.base if hidden else before.base, latency_s=believed.latency_s)
         pairs = [(less_base, before.effects), (believed, ())]
-        effects, held_out = with_own_moments(
-            fit.base,
-            fit.effects,
-            self.held_out,
-            self.fitter.measured.scenes,
-            self.fitter.calibration,
-        )
+        known, scenes = self.fitter.calibration, self.fitter.measured.scenes
+        effects, held_out = with_own_moments(fit.base, fit.effects, self.held_out, scenes, known)
         measure = self.floor.measure
         last = fit.effects[-1]
-        is_named = not isinstance(last.effect, Residual)
         reasons = [
-            is_new(last, self.fitter.calibration, self.config) if is_named else "",
+            "" if isinstance(last.effect, Residual) else is_new(last, known, self.config),
             within_noise(self._at_first(held_out), self.config),
             raises_measured(self._believed_gap(), self._gap(fit), measure),
             *(

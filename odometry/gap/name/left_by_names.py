@@ -23,10 +23,10 @@ def leaves_no_gap(
 ) -> bool:
     """Whether names that last leave no gap, on measured or on held-out runs.
 
-    Positions within their noise floor, of which they close nearly all of the excess; headings and
-    the gyroscope not so far above theirs that they would be called a gap. Chi-squared may be above
-    that of noise all the same: a rougher part of a drive is noisier than its calibration, and
-    without a change is called none.
+    Positions not surely above their noise floor, of which they close nearly all of the excess;
+    headings and the gyroscope not so far above theirs that they would be called a gap. Chi-squared
+    may be above that of noise all the same: a rougher part of a drive is noisier than its
+    calibration, and without a change is called none.
     """
     if any(one.effect.course for one in fit.effects):
         return False
@@ -41,13 +41,14 @@ def leaves_no_gap(
 def _is_within(
     fitter: Fitter, fit: Fitted, scenes: Sequence[DenseWindows], config: GapConfig
 ) -> bool:
-    """Whether positions are within their floor, and were not before."""
+    """Whether positions are not surely above their floor, and nearly all of what they were."""
     known = fitter.calibration
     before, _ = on_runs(known, scenes, config, Measure.POSITION)
     after, floor = on_runs(known, scenes, config, Measure.POSITION, _model(fit))
     closed = before.value - after.value
     nearly_all = config.mostly_closed * (before.value - floor.value)
-    return after.value <= floor.high and closed > 0 and closed >= nearly_all
+    is_above = after.is_surely_above(floor, config.above_floor)
+    return not is_above and closed > 0 and closed >= nearly_all
 
 
 def _model(fit: Fitted) -> tuple[Base, tuple[Added, ...]]:
@@ -66,6 +67,17 @@ def that_last(search: Search, found: Explanation) -> Explanation | None:
     alone = names_alone(search.fitter, left)
     no_gap = lasting and leaves_no_gap(search.fitter, alone, search.held_out, search.config)
     return left if no_gap else None
+
+
+def by_themselves(search: Search, found: Explanation) -> Explanation | None:
+    """Names that last without the functions beside them, where no gap is left for these.
+
+    None where there is one.
+    """
+    left = that_last(search, found)
+    if left is None:
+        return None
+    return search.in_order(left, [e for e in left.effects if not isinstance(e, Residual)])
 
 
 def structure_left(fitter: Fitter, fit: Fitted, config: GapConfig) -> tuple[Predictor, ...]:

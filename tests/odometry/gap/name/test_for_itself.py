@@ -24,8 +24,14 @@ def explanation(cost, *effects):
     return Costing(cost, tuple(SimpleNamespace(effect=one, fitted=None) for one in effects), ())
 
 
-def stood(monkeypatch, found, alone, undecided):
-    """What stands, and why others do not, where `alone` is grown and a name is `undecided`."""
+def stood(monkeypatch, found, alone, undecided, by_names=None):
+    """What stands, and why others do not, where `alone` is grown and a name is `undecided`.
+
+    `by_names` are names that leave no gap by themselves.
+    """
+    monkeypatch.setattr(
+        "odometry.gap.name.accepted_effects.by_themselves", lambda *_: by_names, raising=False
+    )
     monkeypatch.setattr("odometry.gap.name.accepted_effects.grown", lambda *_: alone)
     monkeypatch.setattr("odometry.gap.name.accepted_effects.undecided", lambda *_: undecided)
     refused = {}
@@ -68,3 +74,12 @@ def test_it_does_not_stand_where_others_would_as_well(monkeypatch, name):
     assert refused == {"inertia": "others would"}
     left, _ = stood(monkeypatch, explanation(100.0, name), smooth, "others would")
     assert left.names == ("inertia",)
+
+
+def test_nothing_is_unknown_beside_names_that_leave_no_gap(monkeypatch):
+    """Others equal them, and are listed; a smooth function follows what is rougher there."""
+    found = explanation(100.0, InertiaByIndices(), SMOOTH[0])
+    by_names = explanation(110.0, InertiaByIndices())
+    left, refused = stood(monkeypatch, found, explanation(90.0), "others would", by_names)
+    assert left.names == ("inertia",)
+    assert not refused

@@ -1,6 +1,7 @@
 """Names that leave more than the noise of the calibration, and no gap."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.left_by_names import leaves_no_gap
 from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import on_runs
-from odometry.gap.prepare.statistic import Measure, floor_of
+from odometry.gap.prepare.statistic import Gap, Measure, floor_of
 from odometry.windows.dense.dense_noise import Noise
 
 CONFIG = GapConfig()
@@ -115,6 +116,23 @@ def test_not_where_it_closed_little(calmer, make_scene):
     """Errors that were within their floors before are no gap that a name closes."""
     search, found = searched(calmer, make_scene, lambda columns, twist: twist)  # noqa: ARG005
     assert not no_gap_left(search, found)
+
+
+@pytest.mark.parametrize(
+    ("before_m", "left_m", "expected"),
+    [
+        pytest.param(0.25, (0.096, 0.057, 0.138), True, id="above it by chance"),
+        pytest.param(0.50, (0.130, 0.125, 0.135), False, id="surely above it"),
+        pytest.param(0.15, (0.096, 0.057, 0.138), False, id="closes three quarters"),
+    ],
+)
+def test_positions_may_be_above_their_floor_by_chance(monkeypatch, before_m, left_m, expected):
+    """As where nothing has a name; the interval of the floor alone is not asked."""
+    floor = Gap(0.079, 0.061, 0.095)
+    gaps = iter([Gap(before_m, before_m, before_m), Gap(*left_m)])
+    monkeypatch.setattr(left_by_names, "on_runs", lambda *_: (next(gaps), floor))
+    fit, fitter = SimpleNamespace(base=None, effects=()), SimpleNamespace(calibration=None)
+    assert left_by_names._is_within(fitter, fit, (), CONFIG) == expected
 
 
 def test_not_of_what_begins_at_a_moment(calmer, make_scene):
