@@ -69,6 +69,19 @@ def filtered_treads(run: Run) -> Run:
     return _treads(run, {n: median_filter(speeds[n], rows, mode="nearest") for n in TREADS})
 
 
+def held(run: Run) -> Run:
+    """Speeds that are repeated for 0.3 to 1.2 s, about half of the time."""
+    rng, stamps_s = np.random.default_rng(5), run.odometry.stamps_s
+    last = np.arange(len(stamps_s))
+    at_s = stamps_s[0]
+    while at_s < stamps_s[-1]:
+        until_s = at_s + rng.uniform(0.3, 1.2)
+        first, end = np.searchsorted(stamps_s, [at_s, until_s])
+        last[first:end] = first
+        at_s = until_s + rng.uniform(0.2, 1.0)
+    return _treads(run, {name: run.odometry.columns[name][last] for name in TREADS})
+
+
 def stuck_bit(run: Run) -> Run:
     """A counter of the left wheel one bit of which is always set."""
     speed = run.odometry.columns["v_left"]
@@ -123,8 +136,8 @@ def waved(run: Run) -> Run:
 
 
 NAMELESS: tuple[Callable[[Run], Run], ...] = (
-    *(receivers, side_receivers, swing, filtered_treads, stuck_bit, iron, third_harmonic, turning),
-    *(late_in_turns, crossed, waved),
+    *(receivers, side_receivers, swing, filtered_treads, held, stuck_bit, iron, third_harmonic),
+    *(turning, late_in_turns, crossed, waved),
 )
 
 
