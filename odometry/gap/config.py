@@ -77,8 +77,8 @@ class GapConfig(SmoothConfig):
         Share of what a name closes alone that it must still close beside a smooth function that
         beats it. Beside a function that does the same it closes 0.1 at most.
     main_part : float
-        Share of what a smooth function closes in the place of a name, which the name must close
-        to be its main part. True wheel scales closed 0.93 and more, true delays 0.95 and 0.99.
+        Share of what a smooth function closes in the place of a name that is a part of it, which
+        the name must close to be its main part. True wheel scales closed 0.93 and more.
     largest_growth : float
         Share by which a wheel may seem larger from a moment on: twice what is left of a true one.
     one_sided : float

@@ -9,13 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.effects.commands.late_treads import ActuatorLag, CommandDelay
 from odometry.effects.interface.corrected import Added
 from odometry.effects.interface.time_course import FromAMoment
 from odometry.effects.measurement.sensor_mount import LeverArm
-from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.effects.motion.lateral_skid import LateralSkid
-from odometry.effects.unknown.history import History
 from odometry.effects.unknown.residual import Residual
 from odometry.gap.config import GapConfig
 from odometry.gap.fit.agreement import disagreement
@@ -25,6 +22,7 @@ from odometry.gap.fit.effect_values import essence_spans_none, is_meant
 from odometry.gap.fit.evenness import unevenness
 from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.fit.input_noise import surely_dearer
+from odometry.gap.fit.own_moments import with_own_moments
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form_gates import (
     is_abrupt,
@@ -36,11 +34,10 @@ from odometry.gap.name.form_gates import (
     is_special,
     is_sure_of_its_essence,
 )
-from odometry.gap.name.held_out_beside import closes_less, surely_closes_more
 from odometry.gap.name.one_cause import is_more_than_one
 from odometry.gap.name.search import Search
+from odometry.gap.prepare.statistic import root_mean_square
 
-LATE = (ActuatorLag.name, CommandDelay.name, TimeOffset.name)
 WHOLE = 1.0  # of a motion, that an effect leaves where it does nothing
 PART = 0.02  # of the squares of what a name does: less is left by a function that can do the same
 
@@ -165,9 +162,9 @@ def smooth_in_place(
     """The smooth function that takes the place of one name with more evidence.
 
     None where no function beats the name by the margin, or where the name still closes its share
-    beside the best: then the function describes something else. Nor where held-out data say
-    otherwise (`_stands_held_out`): for names of contact forces, whose equations are right and
-    imperfect, and for those that are the main part of what the function does.
+    beside the best: then the function describes something else. Nor where the function closes less
+    than the name on held-out data, and the name is one of contact forces, whose equations are right
+    and imperfect, or leaves nothing but noise.
     """
     fitter, config = search.fitter, search.config
     others = [*names.effects[:place], *names.effects[place + 1 :]]
@@ -188,10 +185,10 @@ def smooth_in_place(
     margin = margin_of(config, fitter.spread(fits[best]), closed)
     if surely_dearer(names, fits[best], fitter.measured) < margin:
         return None
-    is_main_part = is_most_of(closed, cost_of(before) - cost, config)
-    may_lose = names.effects[place].effect.slow or is_main_part
-    if _stands_held_out(search, names, fits[best], may_lose=may_lose):
+    may_lose = names.effects[place].effect.slow or fitter.spread(names) <= config.unexplained
+    if may_lose and closes_less(search, fits[best], names):
         return None
+    is_main_part = is_most_of(closed, cost_of(before) - cost, config)
     if is_main_part and is_part_of(fitter, names, place, fits[best]):
         return None
     both = _fit(fitter, [*fits[best].effects, names.effects[place]])
@@ -200,34 +197,31 @@ def smooth_in_place(
 
 
 def is_part_of(fitter: Fitter, names: Fitted, place: int, instead: Fitted) -> bool:
-    """Whether the last function of a fit may do what a name does, to first order.
+    """Whether a name is constant shares of a motion, as the last function of a fit may be.
 
-    Constant shares of a motion, of a tread or of the turn (another place of the sensor or of the
-    centre of rotation), or motion that comes late, as a filter of earlier speeds has it.
+    Of a tread, or of the turn: another place of the sensor or of the centre of rotation.
     """
-    effect, function = names.effects[place].effect, instead.effects[-1]
+    effect = names.effects[place].effect
     of_turn = isinstance(effect, LateralSkid | LeverArm)
-    of_time = effect.name in LATE and isinstance(function.effect, History)
-    if not (of_turn or of_time or all(p.absent == WHOLE for p in effect.parameters)):
+    if not of_turn and not all(p.absent == WHOLE for p in effect.parameters):
         return False
     others = (*names.effects[:place], *names.effects[place + 1 :])
     done = fitter.measured.rows(names.base, names.effects)
     done = done - fitter.measured.rows(names.base, others)
+    function = instead.effects[-1]
     columns = fitter.design(instead).jacobian[: len(done), -len(function.values) :]
     left = done - columns @ np.linalg.lstsq(columns, done, rcond=None)[0]
     return bool(left @ left < PART * (done @ done))
 
 
-def _stands_held_out(search: Search, names: Fitted, instead: Fitted, *, may_lose: bool) -> bool:
-    """Whether names stand where a smooth function costs less on the measured runs.
-
-    Where they leave nothing but noise, unless the function surely closes more on held-out data:
-    what it has of the noise and of the base's own errors it has of these runs alone. Those that
-    `may_lose` unless it closes more there.
-    """
-    if search.fitter.spread(names) <= search.config.unexplained:
-        return not surely_closes_more(search, instead, names)
-    return may_lose and closes_less(search, instead, names)
+def closes_less(search: Search, one: Fitted, other: Fitted) -> bool:
+    """Whether one fit leaves more of the gap on held-out data than another."""
+    fitted, believed = search.fitter.measured.scenes, search.fitter.calibration
+    gaps = []
+    for fit in (one, other):
+        of_runs = with_own_moments(fit.base, fit.effects, search.held_out, fitted, believed)
+        gaps.append(root_mean_square(fit.base, *of_runs, search.floor.measure))
+    return gaps[0] > gaps[1]
 
 
 def _fit(fitter: Fitter, effects: Sequence[Added]) -> Fitted:

@@ -17,11 +17,10 @@ from odometry.gap.fit.input_noise import surely_dearer
 from odometry.gap.name.accepted_effects import Standing
 from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.explanation import Explanation
-from odometry.gap.name.form import is_part_of, lacks_essence
+from odometry.gap.name.form import closes_less, is_part_of, lacks_essence
 from odometry.gap.name.form_gates import is_most_of
 from odometry.gap.name.further import Further
 from odometry.gap.name.general import general_candidates, shares_of_motion
-from odometry.gap.name.held_out_beside import closes_less
 from odometry.gap.name.search import Search
 from odometry.gap.prepare.statistic import Gap, root_mean_square
 from odometry.windows.dense.dense import DenseWindows

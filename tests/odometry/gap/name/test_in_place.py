@@ -186,6 +186,33 @@ def test_what_leaves_little_more_to_first_order_is_fitted_in_full(losses, in_ful
     assert sorted(asked) == in_full
 
 
+@pytest.mark.parametrize(
+    ("spread", "closes_less", "stands"),
+    [(1.2, True, True), (1.2, False, False), (1.4, True, False)],
+)
+def test_a_name_that_leaves_noise_gives_way_to_what_closes_as_much_elsewhere(
+    spread, closes_less, stands, monkeypatch
+):
+    """No equation is exact of a body: the runs that a function was fitted to follow it better."""
+    function = "of anything"
+    name = SimpleNamespace(effect=SimpleNamespace(slow=False))
+
+    def fit(effects, *_, **__):
+        kept = tuple(SimpleNamespace(effect=one) for one in effects)
+        return SimpleNamespace(cost=60.0 if function in effects else 200.0, effects=kept)
+
+    fitter = SimpleNamespace(
+        fit=fit, linear_losses=lambda *_: np.array([60.0]), spread=lambda _: spread, measured=None
+    )
+    monkeypatch.setattr(form, "cost_of", lambda fit: fit.cost)
+    monkeypatch.setattr(form, "surely_dearer", lambda *_: np.inf)
+    monkeypatch.setattr(form, "closes_less", lambda *_: closes_less)
+    search = SimpleNamespace(fitter=fitter, config=CONFIG, held_out=())
+    names = SimpleNamespace(effects=[name], cost=100.0)
+    instead = form.smooth_in_place(search, names, 0, [function])
+    assert instead is (None if stands else function)
+
+
 def test_shares_of_motion_follow_every_variable(make_scene, known):
     found = shares_of_motion([make_scene(70, lambda _, twist: twist)], known.base, CONFIG)
     of_treads = {one.variable for one in found if one.by == "speed"}
