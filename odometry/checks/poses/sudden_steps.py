@@ -66,12 +66,14 @@ class Rows:
         left_m, right_m = of.left_m(self.stamps_s), of.right_m(self.stamps_s)
         travel_m = (np.abs(around(left_m)) + np.abs(around(right_m))) / 2
         moves = travel_m > MOVES_M
-        turn_m = np.abs(around(right_m - left_m))
+        turn = np.abs(around(right_m - left_m))
+        if self.evidence.yaw_rate is not None:  # the treads may be at fault
+            turn = np.abs(around(of.gyroscope_rad(self.stamps_s)))
         count = int(np.clip(moves.sum() // CLASS_ROWS, 1, CLASSES))
-        found = np.zeros(len(turn_m), np.intp)
+        found = np.zeros(len(turn), np.intp)
         if moves.any():
-            edges = np.quantile(turn_m[moves], np.arange(1, count) / count)
-            found[moves] = 1 + np.searchsorted(edges, turn_m[moves])
+            edges = np.quantile(turn[moves], np.arange(1, count) / count)
+            found[moves] = 1 + np.searchsorted(edges, turn[moves])
         return found
 
     def large(self, steps_of: tuple[FloatArray, BoolArray], least: float) -> IntArray:
