@@ -21,6 +21,7 @@ from terrain.classification.training_light import BY_LIGHT
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
 from terrain.result.evaluation_notes import event_line
 from terrain.result.lasting_note import lasting_note
+from terrain.result.names_against_poses import names_note
 from terrain.result.run_result import RunResult
 from terrain.result.sets_against_gyroscope import sets_against_gyroscope
 from terrain.result.sets_against_poses import sentences, sets_against_poses
@@ -46,6 +47,7 @@ def run_notes(result: RunResult) -> list[str]:
         *([] if result.watcher is None else _images(result.watcher)),
         *_refused(result),
         *lasting_note(result),
+        *names_note(result),
         *sentences(sets_against_poses(result) or sets_against_gyroscope(result)),
     ]
 

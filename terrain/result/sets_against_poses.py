@@ -72,20 +72,26 @@ def sets_against_poses(result: RunResult) -> list[SetAgainstPoses]:
 
     Of a robot whose yaw was measured; elsewhere nothing is compared.
     """
-    pose = result.run.pose
-    if pose is None or not np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1).any():
+    windows = windows_in_force(result)
+    if windows is None:
         return []
-    run = _with_terrains(result.run, result.replay.stamps_s, result.replay.terrains)
-    try:
-        windows = windows_of([run], WindowConfig(horizon_m=HORIZON_M))
-    except WindowError:
-        return []
-    names = [name for name in result.parameters.terrains if name in windows.terrain]
     return [
-        _compared(name, windows.where(windows.terrain == name), result.parameters, run)
-        for name in names
+        _compared(name, windows.where(windows.terrain == name), result.parameters, result.run)
+        for name in result.parameters.terrains
         if np.count_nonzero(windows.terrain == name) >= FEWEST_WINDOWS
     ]
+
+
+def windows_in_force(result: RunResult) -> Windows | None:
+    """Windows of HORIZON_M between poses, each of one terrain in force; None without any."""
+    pose = result.run.pose
+    if pose is None or not np.isfinite(pose.stack("x", "y", "yaw")).all(axis=1).any():
+        return None
+    run = _with_terrains(result.run, result.replay.stamps_s, result.replay.terrains)
+    try:
+        return windows_of([run], WindowConfig(horizon_m=HORIZON_M))
+    except WindowError:
+        return None
 
 
 def _with_terrains(run: Run, stamps_s: FloatArray, terrains: Sequence[str]) -> Run:

@@ -13,6 +13,7 @@ from terrain.classification.no_ground import SKY
 from terrain.image_labels.image_label import ASTRIDE
 from terrain.image_labels.image_labeller import LOST_DETAILS
 from terrain.result.run_notes import event_lines, run_notes
+from tests.terrain.result.two_terrains import AT_S, two_terrains
 
 TABLE = TerrainParameters("icr", {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0})
 
@@ -215,3 +216,14 @@ def test_refused_poses_are_said_once():
     assert run_notes(result(refused=1, events=(event,))) == []
     (line,) = event_lines(result(refused=1, events=(event,)))
     assert line.endswith("were refused as outliers")
+
+
+def test_names_that_describe_the_motion_worse_than_one_terrain_are_said():
+    of = result(classes=np.array(["a", "b"]))
+    drive = two_terrains({"alpha_left": 0.9, "alpha_right": 0.9})
+    of.run, of.parameters, of.initial_terrain = drive.run, drive.parameters, "a"
+    of.replay.stamps_s = AT_S
+    of.replay.terrains = ["ab"[int(stamp_s // 4) % 2] for stamp_s in AT_S]
+    assert sum("--no-vision --terrain a" in note for note in run_notes(of)) == 1
+    of.replay.terrains = ["a"] * len(AT_S)
+    assert not any("--no-vision" in note for note in run_notes(of))

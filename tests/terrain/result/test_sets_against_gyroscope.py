@@ -12,12 +12,12 @@ from odometry.parameters import ParameterSet, TerrainParameters
 from terrain.result.run_notes import run_notes
 from terrain.result.sets_against_gyroscope import sets_against_gyroscope
 from terrain.result.sets_against_poses import sentences
-from tests.terrain.result.test_sets_against_poses import AT_S, RIGHT, result, table
+from tests.terrain.result.two_terrains import AT_S, RIGHT, table, two_terrains
 
 
 def driven(wrong, *, scale=1.0, bias_rad_s=0.0, turns=1.0, poses=False):
     """The drive of the other tests with a gyroscope; with or without positions."""
-    of = result(wrong, yaw=False)
+    of = two_terrains(wrong, yaw=False)
     speeds = of.run.odometry.stack("v_left", "v_right")
     mean = speeds.mean(axis=1)
     speeds = mean[:, None] + turns * (speeds - mean[:, None])
@@ -75,7 +75,7 @@ def test_another_unit_or_sign_of_the_gyroscope_is_not_a_terrain(scale):
 
 
 def test_without_a_gyroscope_nothing_is_compared():
-    assert sets_against_gyroscope(result({"y_left": 0.9}, yaw=False)) == []
+    assert sets_against_gyroscope(two_terrains({"y_left": 0.9}, yaw=False)) == []
 
 
 def test_run_notes_hold_it_where_no_yaw_was_measured():
