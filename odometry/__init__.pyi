@@ -4,7 +4,6 @@ from .checks.recording import check_recording
 from .comparison.compare import compare
 from .dead_reckoning import dead_reckon, dead_reckon_in_space
 from .errors import IdentificationError, OdometryError
-from .estimates import Replay
 from .estimation.config import IcrEkfConfig
 from .estimation.estimate import Estimate
 from .estimation.icr_ekf import IcrEkf
@@ -18,7 +17,6 @@ from .feel.labels.live import LiveFeel
 from .feel.model import FeelModel
 from .feel.model_file import read_feel_model, write_feel_model
 from .feel.recorded.windows import feel_windows
-from .frames import Frame
 from .gap.gap import find_gap
 from .geometry.tilt import steepest_slope
 from .icrs.measured import icr_medians, measured_icrs
@@ -29,7 +27,6 @@ from .installed import shipped_data
 from .io.run_folder import write_run_folder
 from .io.trajectory_files import read_trajectory, write_trajectory
 from .io.tum import read_spatial_tum, read_tum, write_spatial_tum, write_tum
-from .live_frames import LiveFrames
 from .models.catalogue import MODELS, model_named
 from .models.inputs import Inputs
 from .modes.follow.followed import followed
@@ -39,9 +36,12 @@ from .modes.identify.identify_velocity import identify_velocity_modes
 from .modes.models.mode_set import ModeSet
 from .modes.models.mode_set_file import read_mode_set, write_mode_set
 from .parameters import ParameterSet, TerrainParameters, read_parameters, write_parameters
-from .pipeline import ConstantTerrain, replay
-from .run import Robot, Run
-from .run_span import Span, cut_run
+from .recording.frames import Frame
+from .recording.live_frames import LiveFrames
+from .recording.run import Robot, Run
+from .recording.run_span import Span, cut_run
+from .replays.estimates import Replay
+from .replays.pipeline import ConstantTerrain, replay
 from .simulation.contact.drive import simulate_contact
 from .trajectory import SpatialTrajectory, Trajectory
 from .windows.config import WindowConfig

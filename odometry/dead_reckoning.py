@@ -9,7 +9,7 @@ from odometry.blocks import blocks_of, running_sums
 from odometry.geometry import se2, se3
 from odometry.geometry.angles import wrap
 from odometry.geometry.tilt import level_steps, rises, tilt_of
-from odometry.table import level_where_missing
+from odometry.tables.table import level_where_missing
 from odometry.trajectory import SpatialTrajectory, Trajectory
 
 

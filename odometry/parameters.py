@@ -15,7 +15,7 @@ from odometry.io.formats import check_first_line, format_line, made_text
 from odometry.io.structured import read_toml
 from odometry.models.catalogue import MODELS, OPTIONAL_NAMES, PARAMETER_NAMES
 from odometry.parameter_covariance import covariance_of_table, finite_number
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 FORMAT = 1  # of a file that this program writes, in its first line
 

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 # As which a robot turns, in track widths; printed sets have up to 14 (Baril 2020, concrete)
 LEAST_WIDTHS, MOST_WIDTHS = 0.5, 20.0

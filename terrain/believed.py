@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.checks.findings.finding import CheckReport, Level
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks.fixed_parts import ROBOT_IN_IMAGES
 from terrain.errors import PatchError
 

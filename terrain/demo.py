@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from odometry.installed import shipped_data
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.classification.training import train
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 from odometry.effects.catalogue import added_effects
 from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.measured import shared_measurement
-from odometry.estimates import Replay
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of, withhold
 from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
-from odometry.learned_parameters import learned_parameters
 from odometry.modes.models.mode_set import ModeSet
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import Estimator, TerrainSource, replay
 from odometry.preparation.prepared import prepared_run
-from odometry.run import UNKNOWN, Run
-from odometry.run_span import Span
-from odometry.terrain_sources import NamedTerrain, ReplayedFooting
+from odometry.recording.run import UNKNOWN, Run
+from odometry.recording.run_span import Span
+from odometry.replays.estimates import Replay
+from odometry.replays.learned_parameters import learned_parameters
+from odometry.replays.pipeline import Estimator, TerrainSource, replay
+from odometry.replays.terrain_sources import NamedTerrain, ReplayedFooting
 from terrain.believed import as_checked
 from terrain.checks.recording import checked_run
 from terrain.config import Config

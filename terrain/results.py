@@ -11,7 +11,6 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.blocks import blocks_of
 from odometry.checks.findings.finding import CheckReport
-from odometry.estimates import Replay
 from odometry.estimation.estimate import STATE_NAMES
 from odometry.estimation.kept_estimates import EVERY
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
@@ -24,6 +23,7 @@ from odometry.outputs.manifest import check_finished
 from odometry.outputs.output_folder import OutputFolder
 from odometry.outputs.provenance import about_result
 from odometry.parameters import write_parameters
+from odometry.replays.estimates import Replay
 from odometry.trajectory import Trajectory
 from terrain.errors import ResultError
 from terrain.report import page

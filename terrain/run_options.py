@@ -4,8 +4,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from odometry.checks.findings.finding import CheckReport
-from odometry.run import Run
-from odometry.run_span import Span
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span
 from terrain.believed import believed, without_wrong_velocity
 from terrain.config import Config
 from terrain.main_job import run_odometry

@@ -10,7 +10,7 @@ from odometry.arrays import ByteImage
 from odometry.errors import ConfigError
 from odometry.estimation.config import PAPER
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classification
 from terrain.config import Config

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from odometry.parameters import ParameterSet
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classifier
 from terrain.spelling import plain_name
 

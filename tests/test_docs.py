@@ -95,7 +95,7 @@ def test_every_public_name_is_described(module: str) -> None:
     [
         ('<a href="b.html">b</a>', "a.html: b.html"),
         ('<a href="a.html#there">a</a>', "a.html: a.html#there"),
-        ("<code>odometry.frames.Film</code>", "a.html: odometry.frames.Film"),
+        ("<code>odometry.recording.frames.Film</code>", "a.html: odometry.recording.frames.Film"),
     ],
 )
 def test_a_reference_to_nothing_is_found(tmp_path: Path, broken: str, said: str) -> None:
@@ -104,6 +104,6 @@ def test_a_reference_to_nothing_is_found(tmp_path: Path, broken: str, said: str)
 
 
 def test_a_reference_to_something_is_none(tmp_path: Path) -> None:
-    whole = '<p id="here"><a href="#here">a</a> <code>odometry.frames.Frame</code></p>'
+    whole = '<p id="here"><a href="#here">a</a> <code>odometry.recording.frames.Frame</code></p>'
     (tmp_path / "a.html").write_text(whole + "<code>odometry.csv</code>", encoding="utf-8")
     assert broken_references(tmp_path) == set()

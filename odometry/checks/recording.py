@@ -72,7 +72,7 @@ from odometry.checks.unexplained.unrelated_turns import agreement, yaw_against_c
 from odometry.checks.units.units import units
 from odometry.checks.velocity.velocity import velocity
 from odometry.errors import RunFolderError
-from odometry.run import Run
+from odometry.recording.run import Run
 
 Check = Callable[[Evidence], Iterator[Finding]]
 

@@ -21,8 +21,8 @@ from odometry.models.catalogue import MODELS
 from odometry.parameters import read_parameters
 from odometry.positions.heading import FoundHeading, found_heading, needs_heading
 from odometry.positions.timing import timings_of
-from odometry.run import Run
-from odometry.run_terrains import with_named_terrain
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.windows.recorded.measured_poses import YAW_FOUND
 from odometry.windows.recorded.record import record_of
 

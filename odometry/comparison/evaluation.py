@@ -17,7 +17,7 @@ from odometry.effects.tables import effects_of
 from odometry.errors import OdometryError
 from odometry.evaluation.open_loop import Fitness, fitness, measured_poses, open_loop
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.run_inputs import inputs_of
 from odometry.windows.travel.motion import level_path, window_motion

@@ -10,9 +10,9 @@ from odometry.comparison.file_names import check_file_names
 from odometry.errors import WindowError
 from odometry.identification.shorter_windows import enough_of
 from odometry.identification.stretch_fit import stretches_for
-from odometry.independent_runs import check_no_run_twice
-from odometry.run import Run, robot_labels, run_names
-from odometry.run_terrains import row_terrains
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import Run, robot_labels, run_names
+from odometry.recording.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.measured_poses import lacks_yaw
 from odometry.windows.stretches.stretches import Stretches

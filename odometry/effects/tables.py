@@ -9,7 +9,7 @@ from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
 from odometry.parameters import TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 def effects_of(model: KinematicModel) -> tuple[Added, ...]:

@@ -59,8 +59,8 @@ class IcrEkfConfig:
     compare_s : float
         Over how long what the treads say of the turn is compared with the gyroscope at once; 0
         compares row by row. Where it is 0 and tread speeds come in steps (few ticks in a short
-        time), `terrain.run_odometry` takes as long as makes them even (`odometry.speed_step`):
-        single rounded speeds would widen y_left - y_right.
+        time), `terrain.run_odometry` takes as long as makes them even
+        (`odometry.estimation.speed_step`): single rounded speeds would widen y_left - y_right.
     use_gyroscope : bool
         Whether the gyroscope turns the robot where there is one; otherwise the treads do.
     watch_sensors : bool

@@ -11,7 +11,7 @@ from odometry.effects.interface.corrected import Corrected, corrected_twist, wit
 from odometry.effects.tables import model_of
 from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.run_inputs import inputs_of
 
 NO_SPEEDS, NO_TWIST = np.zeros(2), np.zeros(3)

@@ -15,8 +15,8 @@ from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.other_places import Doubt
 from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, X_ICR, Y_LEFT
 from odometry.estimation.watches.sensor_watch import SensorWatch
-from odometry.frames import Frame
 from odometry.models.icr import icr_twist
+from odometry.recording.frames import Frame
 
 STATE_NAMES = (
     "x",

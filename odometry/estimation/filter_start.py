@@ -13,8 +13,8 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.measurement import Gaussian, Place, reference_point
 from odometry.estimation.terrain_beliefs import OF_TERRAIN_BLOCK
 from odometry.estimation.transition import GYRO_BIAS, STATES, YAW
-from odometry.frames import Frame
 from odometry.geometry.angles import wrap_one
+from odometry.recording.frames import Frame
 
 INITIAL_YAW = "initial_yaw"  # kinds of events, whose values are the yaw and its sigma [rad]
 LATER_YAW = "heading_found"

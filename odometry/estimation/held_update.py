@@ -12,7 +12,7 @@ from odometry.estimation.prediction import Predicted
 from odometry.estimation.stuck_update import cells_of, gone_on, is_over
 from odometry.estimation.watches import held_watch, stuck_watch
 from odometry.estimation.watches.stuck_watch import StuckWatch
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,9 @@ from odometry.estimation.stuck_update import StuckUpdate
 from odometry.estimation.terrain_beliefs import TerrainBeliefs
 from odometry.estimation.watches import sensor_watch, slip_watch
 from odometry.estimation.watches.rest_watch import stand
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet
-from odometry.run_terrains import Footing
+from odometry.recording.frames import Frame
+from odometry.recording.run_terrains import Footing
 
 
 class IcrEkf:

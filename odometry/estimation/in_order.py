@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol
 
 from odometry.errors import EstimationError
 from odometry.estimation.estimate import Estimate
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 
 class Stepping(Protocol):

@@ -31,7 +31,7 @@ from odometry.estimation.measurement import (
 from odometry.estimation.noise_scale import NoiseScale, adapted, velocity_variances
 from odometry.estimation.other_places import Others, left, return_event, returned, watched
 from odometry.estimation.transition import YAW
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 
 class Seen(NamedTuple):

@@ -15,7 +15,7 @@ from odometry.estimation.transition import ALPHA_LEFT, GYRO_BIAS, STATES, YAW, X
 from odometry.estimation.watches import contrary_treads, sensor_watch, tread_watch
 from odometry.estimation.watches.frozen_treads import restored
 from odometry.estimation.watches.sensor_watch import Events, SensorWatch
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 GAP_DENSITY = 25.0, 9.0  # [m^2/s], [rad^2/s]: while speeds are not known, all may happen
 

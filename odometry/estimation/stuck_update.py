@@ -16,7 +16,7 @@ from odometry.estimation.watches import stuck_watch
 from odometry.estimation.watches.rest_watch import STILL_M_S
 from odometry.estimation.watches.sensor_watch import SensorWatch
 from odometry.estimation.watches.stuck_watch import StuckWatch
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from odometry.estimation.measurement import Gaussian
 from odometry.models.base import IcrForm
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import UNKNOWN
-from odometry.run_terrains import Footing
+from odometry.recording.run import UNKNOWN
+from odometry.recording.run_terrains import Footing
 
 OF_TERRAIN_BLOCK = np.ix_(OF_TERRAIN, OF_TERRAIN)
 

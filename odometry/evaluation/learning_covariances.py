@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimates import Replay
 from odometry.estimation.transition import STATES, Y_LEFT
 from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.models.icr import icr_speed_matrix, icr_twist_jacobian
+from odometry.replays.estimates import Replay
 
 
 def learning_covariances(replay: Replay, path: OpenLoopPath) -> Iterator[FloatArray]:

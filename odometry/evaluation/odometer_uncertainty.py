@@ -8,7 +8,6 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.blocks import running_sums
-from odometry.estimates import Replay
 from odometry.evaluation.learning_covariances import learning_covariances, parameter_covariances
 from odometry.evaluation.odometer_noise import (
     NOISE_WITHOUT_POSES,
@@ -24,7 +23,8 @@ from odometry.evaluation.open_loop_consistency import (
 )
 from odometry.evaluation.open_loop_errors import OpenLoopPath
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.estimates import Replay
 from odometry.trajectory import Trajectory
 
 

@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.dead_reckoning import dead_reckon_in_space
 from odometry.errors import RunFolderError, TrajectoryError
 from odometry.geometry.angles import continuous_difference
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import SpatialTrajectory
 from odometry.windows.recorded.run_inputs import attitude_of
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from odometry.windows.recorded.turns import counted_turns
 

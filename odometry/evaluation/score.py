@@ -13,8 +13,8 @@ from odometry.evaluation.relative import (
     position_errors,
     relative_errors,
 )
-from odometry.frames import POSE_COLUMNS
-from odometry.run import Run
+from odometry.recording.frames import POSE_COLUMNS
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 
 JUDGED_EVERY_S = 2.0

@@ -22,7 +22,7 @@ from odometry.export.source import ExportSource
 from odometry.geometry import se2, se3
 from odometry.installed import extra_module
 from odometry.io.euroc import NANOSECONDS, nanoseconds
-from odometry.table import Table
+from odometry.tables.table import Table
 
 TOPICS = "/terrain_odometry"
 FRAME, BODY = "map", "base_link"

@@ -11,7 +11,7 @@ from odometry.export.ros_yaml import printable, ros_yaml
 from odometry.export.source import ExportSource
 from odometry.identification.identification import Identification
 from odometry.io.files import atomic_write
-from odometry.run import Run
+from odometry.recording.run import Run
 
 
 def write(source: ExportSource, folder: Path) -> None:

@@ -16,7 +16,7 @@ from odometry.io.structured import read_json
 from odometry.outputs.manifest import check_finished
 from odometry.outputs.written_tables import changes_of
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.trajectory import Trajectory
 
 RESULT_FORMAT = 1  # of result.json

@@ -20,8 +20,8 @@ from odometry.feel.model import FeelModel
 from odometry.feel.recorded.whole_drives import WholeDrives, whole_drives
 from odometry.feel.recorded.windows import LONGEST_S, SHORTEST_S, FeelWindows, feel_windows
 from odometry.identification.identify import robot_of
-from odometry.independent_runs import check_no_run_twice
-from odometry.run import Run
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import Run
 
 LEAST_RUNS = 2  # of a terrain: one to fit, one to hold out
 LEAST_WINDOWS = 5  # of a terrain and run on the average

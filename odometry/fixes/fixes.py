@@ -14,7 +14,7 @@ from odometry.fixes.fix_states import kinds, lesser, no_fix
 from odometry.fixes.local_metres import on_earth, zeros_within_deg
 from odometry.fixes.nmea import read_nmea
 from odometry.fixes.rtklib import read_rtklib
-from odometry.table import Table
+from odometry.tables.table import Table
 
 # A log that is faster than its receiver holds each place for nearly the same number of rows; a
 # rounded place stays for as long as the robot needs to leave it

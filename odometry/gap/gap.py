@@ -16,10 +16,10 @@ from odometry.gap.prepare.measured import measured_of
 from odometry.gap.prepare.measures import measures_of, shown_as_measured
 from odometry.gap.prepare.prepared import Prepared, prepared
 from odometry.gap.prepare.statistic import Measure, floor_there
-from odometry.independent_runs import check_no_run_twice
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import Run
 
 
 def find_gap(

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.geometry import se2
 from odometry.icrs.points import NO_SLIP, icr_covariances, icrs_of_twist, turn_is_known
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances, window_covariances
 from odometry.windows.travel.windows import Windows, windows_of

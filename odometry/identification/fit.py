@@ -13,7 +13,7 @@ from odometry.identification.solve import Solution, loss, solve
 from odometry.identification.start import SolverConfig, Start, by_name, start_of
 from odometry.identification.uncertainty import Uncertainty, parameter_uncertainty, residual_scale
 from odometry.models.base import KinematicModel
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches.stretch_noise import StretchNoise
 from odometry.windows.travel.noise import pose_variances

@@ -14,7 +14,7 @@ from odometry.identification.stretch_fit import fit_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import model_named
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches.stretches import Stretches
 from odometry.windows.travel.windows import Windows

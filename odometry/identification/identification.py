@@ -15,7 +15,7 @@ from odometry.identification.runs_apart import RunsApart
 from odometry.identification.stretch_fit import FEWEST
 from odometry.identification.two_kinds import TwoKinds
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.window_errors import WindowErrors, errors_over
 

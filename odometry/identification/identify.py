@@ -26,10 +26,10 @@ from odometry.identification.shorter_windows import enough_of
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.identification.two_kinds import two_kinds
-from odometry.independent_runs import check_no_run_twice
 from odometry.models.catalogue import MODELS
-from odometry.run import UNKNOWN, Robot, Run
-from odometry.run_terrains import with_named_terrain
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import UNKNOWN, Robot, Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches.stretches import Stretches
 from odometry.windows.travel.windows import Windows, windows_of

@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.identification.fit import Fit
 from odometry.identification.fitted import NORMAL, deviations_within
 from odometry.models.base import Parameter
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.record import (
     CHANGE_OF_TERRAIN,

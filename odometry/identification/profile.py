@@ -12,7 +12,7 @@ from odometry.identification.fitted import Interval, deviations_within
 from odometry.identification.identification import Identification
 from odometry.identification.problem import PROBLEMS, AnyProblem, StretchProblem
 from odometry.identification.start import SolverConfig
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches.stretches import Stretches
 from odometry.windows.travel.noise import pose_variances

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.identification.spread import FEWEST_WINDOWS
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.stretches.stretches import Stretches
 from odometry.windows.travel.windows import Windows, windows_of

@@ -13,7 +13,7 @@ from odometry.identification.solve import Solution
 from odometry.identification.start import SolverConfig
 from odometry.identification.uncertainty import residual_scale
 from odometry.models.base import KinematicModel, Stages
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances
 from odometry.windows.travel.windows import Windows

@@ -9,7 +9,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.config import require, require_positive
 from odometry.errors import IdentificationError, ParameterError
 from odometry.models.base import KinematicModel
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 LOSSES = ("huber", "squares", "linear")
 

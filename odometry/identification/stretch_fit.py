@@ -16,7 +16,7 @@ from odometry.identification.start import SolverConfig, start_of
 from odometry.identification.uncertainty import Uncertainty, grown
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.measured_poses import lacks_yaw
 from odometry.windows.stretches.stretch_motion import change_by_late_turns

@@ -21,7 +21,7 @@ from odometry.io.csv_columns import (
     quoted_text,
 )
 from odometry.io.files import atomic_write
-from odometry.table import Table
+from odometry.tables.table import Table
 
 
 def read_csv_table(file: Path, required: Iterable[str], complete: Iterable[str] = ()) -> Table:

@@ -14,7 +14,7 @@ from odometry.errors import RunFolderError
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.files import atomic_write, leads_out
 from odometry.io.structured import read_toml
-from odometry.table import Table
+from odometry.tables.table import Table
 
 # file: (is it required, columns it must have, columns with a number in every row)
 FILES = {

@@ -4,7 +4,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import TrajectoryError
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.trajectory import SpatialTrajectory
 
 ZONE_S, MOST_ZONE_S = 900.0, 14 * 3600.0  # time zones differ by whole quarters of an hour

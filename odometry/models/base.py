@@ -11,7 +11,7 @@ from odometry.arrays import FloatArray, components_last
 from odometry.errors import ParameterError
 from odometry.models.inputs import Inputs
 from odometry.parameter_covariance import LARGEST
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from odometry.models.icr_slope import GUESSED_HALF_LENGTH
 from odometry.models.inertia_model import G_M_S2
 from odometry.models.inputs import Inputs
 from odometry.models.three_equations import solve_3x3
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 BLOCK = 4096  # samples at a time: what is known of their contacts fits the cache
 GUESSED_HEIGHT = 0.3  # of the track width

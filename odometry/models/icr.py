@@ -10,7 +10,7 @@ from odometry.errors import ParameterError
 from odometry.models.base import USUAL_GAIN, IcrForm, Linearised, Parameter, vectors, zero_matrices
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 ICRS, ALPHAS = slice(0, 3), slice(3, 5)  # where the parameters of `icr` have them
 GUESSED_WIDTHS = 1.5  # distance between tread ICRs in track widths, where nothing else is known

@@ -17,7 +17,7 @@ from odometry.models.icr import (
     icr_twist_jacobian,
 )
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 GUESSED_V_MAX_M_S = 1.0
 GUESSED_HALF_LENGTH = 0.35  # of the body's length: the wheels stand within the body

@@ -26,7 +26,7 @@ from odometry.models.inertia_forces import (
     indices_under,
 )
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 G_M_S2 = 9.80665
 GUESSED_MASS_KG = 1.0  # the coefficients are then by acceleration

@@ -44,7 +44,7 @@ class Inputs:
         Measured x and y, in the frame of the reference, interpolated; None without measured poses.
     unrepeated_m_s : (..., 2) or None
         What lines between new values add to tread speeds that are repeated
-        (`odometry.repeated_speeds`); None where none is.
+        (`odometry.recording.repeated_speeds`); None where none is.
 
     Examples
     --------

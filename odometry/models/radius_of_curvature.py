@@ -14,7 +14,7 @@ from odometry.models.base import (
 )
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 class RadiusOfCurvature(KinematicModel):

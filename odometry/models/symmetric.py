@@ -8,7 +8,7 @@ from odometry.models.base import USUAL_GAIN, IcrForm, Linearised, Parameter, vec
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.models.inputs import Inputs
 from odometry.models.invertible import InvertibleModel, before_slip, icr_tread_speeds
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 class DifferentialDrive(InvertibleModel):

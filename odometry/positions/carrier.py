@@ -11,7 +11,7 @@ from odometry.identification.fitted import Fit
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import fit_stretches, stretches_for
 from odometry.models.catalogue import MODELS
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.record import Record
 from odometry.windows.stretches.stretch_motion import antenna_ways, carried, rotations

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.positions.carrier import carrier_of
 from odometry.positions.positions_yaw import yaw_at_positions
 from odometry.positions.timing import Timing, timings_of
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.measured_poses import YAW_FOUND, lacks_yaw
 
 NOISE_LENGTHS = 28.0  # a window so many times longer than the noise is off by 0.05 m per m for it

@@ -14,8 +14,8 @@ from scipy.stats import t
 
 from odometry.arrays import FloatArray, usual_period_s
 from odometry.errors import OdometryError
-from odometry.run import Run, with_stamps
-from odometry.table import Table
+from odometry.recording.run import Run, with_stamps
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.gyroscope_yaw import PathShape, Turned
 from odometry.windows.recorded.record import Record

@@ -6,9 +6,9 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.stamps.timing import TOGETHER, lags_of
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
-from odometry.late_rows import NEARLY_ALL, LateRows, late_rows
 from odometry.preparation.row_rates import EARLY_S
-from odometry.run import Run, with_stamps, with_table
+from odometry.recording.run import Run, with_stamps, with_table
+from odometry.tables.late_rows import NEARLY_ALL, LateRows, late_rows
 
 SIGMAS = 3.0  # of the lag beyond that
 
@@ -16,9 +16,9 @@ SIGMAS = 3.0  # of the lag beyond that
 def with_even_rows(run: Run, config: IcrEkfConfig) -> tuple[Run, tuple[FilterEvent, ...]]:
     """The run with even stamps of odometry.csv and imu.csv: theirs are of arrival, or coarse.
 
-    Rows that share a stamp are there again. See `odometry.late_rows`. What is left, the delay of
-    the rows that came fastest, is that by which poses with yaw then are too early against the
-    gyroscope. Unless `config` is `causal` or does not watch its sensors; with an event for each
+    Rows that share a stamp are there again. See `odometry.tables.late_rows`. What is left, the
+    delay of the rows that came fastest, is that by which poses with yaw then are too early against
+    the gyroscope. Unless `config` is `causal` or does not watch its sensors; with an event for each
     file.
     """
     if config.causal or not config.watch_sensors:

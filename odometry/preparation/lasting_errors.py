@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.dead_reckoning import dead_reckon
-from odometry.run import Run
-from odometry.sensors import gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import gyroscope_of
 
 WINDOW_S = 120.0  # over which treads and gyroscope keep the shape of a path
 LAGS_S = (2.0, 8.0)  # over which scatter is independent and errors that last are not

@@ -13,8 +13,8 @@ from odometry.checks.stamps.timing import found_in, lags_of, timing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.preparation.row_rates import EARLY_S
-from odometry.run import Run, with_stamps
-from odometry.table import Table
+from odometry.recording.run import Run, with_stamps
+from odometry.tables.table import Table
 
 FINDING, PARTS = "pose_late", {"yaw_late", "positions_late"}
 Moved = tuple[Run, tuple[FilterEvent, ...]]

@@ -11,7 +11,7 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.preparation.lasting_errors import lasting_sigma_m
 from odometry.preparation.rounded_positions import with_rounding
 from odometry.preparation.wander_at_rest import wander_sigma_m
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.interpolated import poses_per_measured_one
 
 Noise = tuple[IcrEkfConfig, tuple[FilterEvent, ...]]

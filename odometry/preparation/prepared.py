@@ -6,12 +6,12 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.measurement.measured import robot_run
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
+from odometry.estimation.speed_step import with_speed_step
 from odometry.preparation.even_rows import with_even_rows
 from odometry.preparation.pose_delay import without_pose_delay
 from odometry.preparation.pose_noise import with_pose_noise
 from odometry.preparation.row_rates import with_row_rates
-from odometry.run import Run
-from odometry.speed_step import with_speed_step
+from odometry.recording.run import Run
 from odometry.windows.recorded.measured_poses import lacks_yaw
 
 

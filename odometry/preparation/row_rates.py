@@ -11,7 +11,7 @@ from odometry.checks.stamps.timing import TOGETHER, lags_of
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.filter_event import FilterEvent
 from odometry.positions.timing import timings_of
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.measured_poses import lacks_yaw
 
 SLOW_S = 0.15  # between rows: half of a faster row is a delay like others

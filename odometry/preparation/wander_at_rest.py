@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.estimation.watches.rest_watch import STILL_M_S
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.interpolated import interpolated
 from odometry.windows.recorded.spans import runs_of
 

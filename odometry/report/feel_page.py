@@ -14,11 +14,11 @@ from odometry.feel.labels.files import sentences
 from odometry.feel.labels.follow import Felt
 from odometry.feel.model import FeelModel
 from odometry.modes.models.mode_set import NONE_OF_THESE
+from odometry.recording.run import UNKNOWN
 from odometry.report.drawing.before_use import before_use
 from odometry.report.drawing.figure import mode_colours, save_figure
 from odometry.report.drawing.html import Grid, Listing, Paragraph, Picture, Section, write_page
 from odometry.report.modes.mode_panels import GREYS, draw_strips, drawn_rows
-from odometry.run import UNKNOWN
 
 WIDTH_IN, STRIP_IN, ROW_IN, HEAD_IN = 7.0, 0.26, 0.24, 1.0
 

@@ -10,12 +10,12 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import SimulationError
 from odometry.io.run_folder import write_run_folder
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.simulation.contact.drive import ContactDrive
 from odometry.simulation.contact.traction import Traction
 from odometry.simulation.contact.vehicle import ContactVehicle
 from odometry.simulation.noise import measured_poses
-from odometry.table import Table
+from odometry.tables.table import Table
 
 
 @dataclass(frozen=True)

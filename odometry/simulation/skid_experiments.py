@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from odometry.errors import SimulationError
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact
 from odometry.simulation.contact.friction import Shear
 from odometry.simulation.contact.traction import Traction

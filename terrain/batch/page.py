@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 import numpy as np
 
-from odometry.learned_parameters import UNITS, MergedTerrain
+from odometry.replays.learned_parameters import UNITS, MergedTerrain
 from odometry.report.drawing.html import Grid, Listing, Paragraph, Section, write_page
 from terrain.batch.row import Learned, Row
 from terrain.report.tables import NOTHING, number

@@ -10,8 +10,8 @@ import numpy as np
 from odometry.checks.findings.finding import Level
 from odometry.io.csv_table import write_csv_table
 from odometry.io.structured import read_json
-from odometry.learned_parameters import MergedTerrain, learned_by_runs, merged_terrain
 from odometry.parameters import ParameterSet, read_parameters, write_parameters
+from odometry.replays.learned_parameters import MergedTerrain, learned_by_runs, merged_terrain
 from terrain.batch.job import FAILED, Outcome
 from terrain.errors import ResultError
 from terrain.result.evaluation_notes import HARMLESS

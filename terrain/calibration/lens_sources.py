@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from odometry.arrays import ByteImage
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.calibration.chessboard import BoardViews, Chessboard, find_boards, photo_files
 from terrain.calibration.lens_from_boards import LensFit, lens_from_boards
 from terrain.camera_files.lens_models import Calibration, Lens

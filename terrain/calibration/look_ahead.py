@@ -6,7 +6,7 @@ from math import inf
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classifier
 from terrain.region.footprint_parts import Rectangle

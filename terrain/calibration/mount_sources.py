@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from odometry.arrays import FloatArray
 from odometry.geometry import se3
 from odometry.geometry.se3 import mount_of_optical
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from terrain.calibration.lens_sources import LensSource
 from terrain.calibration.mount_fit import MountFit

@@ -8,7 +8,7 @@ from tqdm import tqdm
 
 from odometry.arrays import ByteImage, FloatArray, IntArray, spread
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from terrain.calibration.warp import Warp, followed
 from terrain.camera_files.lens_models import Lens

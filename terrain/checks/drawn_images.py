@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray, spread
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from terrain.camera.camera import Camera
 from terrain.errors import CameraError, ImageError
 from terrain.images import read_image

@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray, spread
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.lasting_shade import lasting_shade
 from terrain.checks.terrain_views import FARTHEST, TerrainViews

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray, spread
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.terrain_views import FEWEST, Pixels, TerrainViews
 

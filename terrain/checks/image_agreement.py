@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.cleaned_recording import CleanedRecording
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks.ground_steps import GroundSteps
 
 Complex = NDArray[np.complex128]

@@ -12,7 +12,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, spread
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks.image_values import FLAT, grey_of
 from terrain.image_size import PIXELS, is_whole, stated_size
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.run import Run
+from odometry.recording.run import Run
 
 # By the treads, without an image: terrain that is shorter than 2 m is rarely listed in any case.
 # Cameras that take an image for each metre or more have as long a way between all of them

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.fixed_parts import fixed_parts, robot_in_images
 from terrain.checks.ground_steps import FEWEST_PAIRS, GroundSteps, ground_steps

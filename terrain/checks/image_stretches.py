@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import BoolArray, IntArray
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import pairs_to_compare
 from terrain.checks.image_agreement import robot_motion

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.checks.findings.finding import Finding, Level
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import APART_S, pairs_to_compare
 from terrain.checks.image_agreement import robot_motion

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 # No skid-steer robot carries its camera as far from its centre [m].
 FARTHEST_M = 5.0

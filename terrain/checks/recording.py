@@ -14,8 +14,8 @@ from odometry.checks.recording import check_recording
 from odometry.checks.stamps.bursts import in_bursts
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.errors import RunFolderError
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from terrain.camera.camera import Camera
 from terrain.camera.distortion import undistort
 from terrain.checks.drawn_images import straight_ahead

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from terrain.camera.camera import Camera
 from terrain.checks.drawn_images import RunRegions, run_regions, straight_ahead
 from terrain.checks.other_cameras import (

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
 from odometry.io.files import read_bytes
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.image_files import MOST_BYTES
 from terrain.errors import ImageError

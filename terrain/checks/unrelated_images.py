@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import (
     FEWEST_PAIRS,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
 from terrain.classification.likeness.noticed_alterations import may_pass_unnoticed
 

@@ -8,7 +8,7 @@ import numpy as np
 from sklearn.metrics import confusion_matrix, roc_auc_score
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.neighbours.validation import balanced_accuracy

@@ -9,7 +9,7 @@ import numpy as np
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from odometry.arrays import AnyArray, BoolArray, ByteImage, FloatArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import COLOURLESS, Classification
 from terrain.classification.features.feature_jobs import features_of
 from terrain.classification.likeness.colour_range import is_colourless

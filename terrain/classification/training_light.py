@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import ByteImage
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification, Classifier
 from terrain.classification.likeness.likeness import FEWEST_IMAGES, Likeness
 

@@ -10,8 +10,8 @@ import click
 
 if TYPE_CHECKING:
     from odometry.checks.findings.finding import CheckReport
-    from odometry.run import Run
-    from odometry.run_span import Span
+    from odometry.recording.run import Run
+    from odometry.recording.run_span import Span
 
 
 CHECKS = "terrain.checks"  # key of the reports in click's context
@@ -38,7 +38,7 @@ def span_options(command: Callable[..., None]) -> Callable[..., None]:
     )
     @wraps(command)
     def with_span(*, from_s: float, to_s: float, **others: Any) -> None:
-        from odometry.run_span import Span
+        from odometry.recording.run_span import Span
 
         if from_s >= to_s:
             raise click.UsageError(

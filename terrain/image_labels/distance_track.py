@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classifier
 from terrain.classification.neighbours.rejection import as_of_one_patch, rejection_limit
 from terrain.image_labels.image_label import ImageLabel

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import (
     COLOURLESS,
     DOUBTFUL,

@@ -10,8 +10,8 @@ import numpy as np
 
 from odometry.arrays import ByteImage, FloatArray
 from odometry.estimation.estimate import Estimate
-from odometry.frames import Frame
-from odometry.run import UNKNOWN, Robot
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN, Robot
 from terrain.camera.camera import Camera
 from terrain.classification.answer import ONE_CHANNEL, Classifier
 from terrain.classification.likeness.likeness import Likeness

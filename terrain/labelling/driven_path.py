@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from terrain.switch.place_labels import Footprint
 

@@ -10,7 +10,7 @@ from odometry.feel.labels.felt import SILENT, FeelConfig
 from odometry.feel.labels.files import doubts
 from odometry.feel.labels.follow import Felt, follow_feel
 from odometry.feel.model import FeelModel
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 from terrain.labelling.given_terrain import GivenTerrain
 
 SURE = 0.8  # probability from which a window labels: a wrong label misleads the classifier

@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
-from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import row_terrains
+from odometry.recording.run import UNKNOWN, Run
+from odometry.recording.run_terrains import row_terrains
 
 SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
 SPANS = "the spans"

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from odometry.parameters import ParameterSet
-from odometry.run import Run
-from odometry.terrain_sources import NamedTerrain
+from odometry.recording.run import Run
+from odometry.replays.terrain_sources import NamedTerrain
 from terrain.camera.camera import Camera
 from terrain.errors import PatchError
 from terrain.labelling.corrections import Corrections

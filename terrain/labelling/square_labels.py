@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.labelling.given_terrain import GivenTerrain
 from terrain.labelling.squares import DrivenSquare, SquareFinder
 

@@ -10,8 +10,8 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from odometry.trajectory import Trajectory
 from odometry.windows.recorded.gaps import odometry_gaps
 from terrain.camera.camera import Camera

@@ -9,9 +9,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.frames import POSE_COLUMNS, VELOCITY_COLUMNS, Frame
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.frames import POSE_COLUMNS, VELOCITY_COLUMNS, Frame
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 FIRST_S, TIMES = 60.0, 2.0  # of frames at the first check, and how many times as many at the next
 WINDOW_S = 120.0  # of the frames that are checked

@@ -5,8 +5,8 @@ from collections import Counter
 
 import numpy as np
 
-from odometry.frames import Frame
-from odometry.run import UNKNOWN
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import colourless_note
 from terrain.image_labels.image_label import ASTRIDE, ImageLabel
 from terrain.image_labels.image_labeller import OTHER_SIZE

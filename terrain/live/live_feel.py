@@ -11,9 +11,9 @@ from odometry.estimation.estimate import Estimate
 from odometry.feel.labels.felt import SILENT, FeltWindows
 from odometry.feel.labels.live import LATE_S, LiveFeel
 from odometry.feel.recorded.windows import LONGEST_S, STEPS
-from odometry.frames import Frame
 from odometry.geometry import se2
-from odometry.run import UNKNOWN
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN
 from odometry.trajectory import Trajectory
 from terrain.image_labels.image_label import ImageLabel
 from terrain.result.contradictions import STRETCH_S, most_frequent

@@ -8,13 +8,13 @@ import numpy as np
 
 from odometry.errors import ConfigError, EstimationError
 from odometry.estimation.icr_ekf import IcrEkf
+from odometry.evaluation.running_odometer import RunningOdometer
 from odometry.feel.labels.live import NOTHING
 from odometry.feel.model import FeelModel
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.pipeline import TerrainSource, can_start, started, stepped
-from odometry.run import UNKNOWN, Robot
-from odometry.running_odometer import RunningOdometer
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN, Robot
+from odometry.replays.pipeline import TerrainSource, can_start, started, stepped
 from odometry.set_of_robot import set_notes
 from odometry.windows.recorded.gaps import GapsSoFar
 from terrain.camera.camera import Camera

@@ -6,8 +6,8 @@ from odometry.errors import ConfigError
 from odometry.feel.labels.live import LiveFeel
 from odometry.feel.model import FeelModel
 from odometry.feel.model_file import read_feel_model
-from odometry.pipeline import ConstantTerrain, TerrainSource
-from odometry.run import Robot
+from odometry.recording.run import Robot
+from odometry.replays.pipeline import ConstantTerrain, TerrainSource
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.own_statistics import used_as

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from odometry.estimation.estimate import ALPHAS, Estimate
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.transition import Y_LEFT, Y_RIGHT
-from odometry.run_end import lasting_events
+from odometry.replays.run_end import lasting_events
 from terrain.result.evaluation_notes import HARMLESS
 
 SILENT_GYROSCOPE = "gyroscope_silence"

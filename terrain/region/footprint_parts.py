@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry import se2
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.config import require, require_positive
 from odometry.geometry import se2
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 from terrain.region.footprint_parts import (
     FootprintPart,

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import CheckReport, Level
 from odometry.outputs.output_file import picture_source
+from odometry.recording.run import Run
 from odometry.report.check_plots import (
     marks_of,
     plot_measured_path,
@@ -16,7 +17,6 @@ from odometry.report.check_plots import (
     plot_yaw_rates,
 )
 from odometry.report.drawing.figure import save_figure
-from odometry.run import Run
 from terrain.checks.drawn_images import shown_image
 from terrain.report.ground_plots import plot_ground
 

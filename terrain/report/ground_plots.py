@@ -11,8 +11,8 @@ from matplotlib.patheffects import withStroke
 
 from odometry.arrays import BoolArray, ByteImage, FloatArray
 from odometry.outputs.output_file import picture_source
+from odometry.recording.run import Robot
 from odometry.report.drawing.figure import save_figure
-from odometry.run import Robot
 from terrain.calibration.chessboard import BoardViews
 from terrain.calibration.lens_from_boards import LensFit
 from terrain.calibration.mount_from_points import MarkedPoints

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.arrays import IntArray
 from odometry.evaluation.stretches import terrain_at
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.image_labels.image_label import ImageLabel
 from terrain.result.run_result import RunResult
 from terrain.result.switch_delay import true_stretches

@@ -10,7 +10,7 @@ from matplotlib.patheffects import withStroke
 
 from odometry.arrays import ByteImage, FloatArray, IntArray
 from odometry.evaluation.stretches import Stretch
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.camera.camera import Camera
 from terrain.image_labels.image_label import ImageLabel
 from terrain.region.whole_image import Cell, outline

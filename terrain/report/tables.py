@@ -7,8 +7,8 @@ import numpy as np
 
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.evaluation.score import Score
+from odometry.recording.run import UNKNOWN
 from odometry.report.drawing.html import Grid
-from odometry.run import UNKNOWN
 from terrain.report.lines import ICR_COORDINATES, ReportLines
 from terrain.result.evaluation_notes import not_checked, verdict
 from terrain.result.run_result import RunResult, TerrainChange

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from odometry.evaluation.score import Score
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.report.lines import (
     GYROSCOPE,
     IDEAL,

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray
 from odometry.feel.labels.felt import SILENT, FeltWindows
 from odometry.geometry import se2
-from odometry.run import UNKNOWN
-from odometry.terrain_sources import NamedTerrain
+from odometry.recording.run import UNKNOWN
+from odometry.replays.terrain_sources import NamedTerrain
 from odometry.trajectory import Trajectory
 from terrain.image_labels.image_label import ImageLabel
 from terrain.result.contradictions_so_far import Contradiction, ContradictionsSoFar

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 BREAK_S = 2.5  # a shorter time between two equal stretches ends none
 LASTS_S = 5.0  # what is shorter is an edge between terrains, or chance

@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.estimates import Replay
 from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.relative import (
     EvaluationConfig,
@@ -17,7 +16,8 @@ from odometry.evaluation.relative import (
 )
 from odometry.evaluation.score import Score, Withheld, summary, window_errors
 from odometry.geometry import se2
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.estimates import Replay
 from odometry.trajectory import Trajectory
 
 SCATTERS = ("noisy_positions", "rounded_positions")  # their first value is its deviation

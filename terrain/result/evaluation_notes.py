@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from odometry.estimates import MOST, Replay
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.filter_start import INITIAL_YAW, LATER_YAW, REINITIALISED
 from odometry.estimation.transition import GYRO_BIAS
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.open_loop_consistency import DEGREES, OpenLoopConsistency
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, Score
-from odometry.gyroscope_bias import DRIFT_FOLLOWED
-from odometry.run_end import OFF_AT_END
+from odometry.replays.estimates import MOST, Replay
+from odometry.replays.gyroscope_bias import DRIFT_FOLLOWED
+from odometry.replays.run_end import OFF_AT_END
 from terrain.result.evaluated import SecondReplay
 
 NEEDS_NO_FIT = {

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from odometry.arrays import IntArray
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 from terrain.image_labels.image_label import ImageLabel
 from terrain.result.run_result import RunResult
 

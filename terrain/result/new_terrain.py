@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate
-from odometry.frames import Frame
-from odometry.learned_parameters import learned_parameters
 from odometry.parameters import ParameterSet
-from odometry.pipeline import Estimator, replay
-from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import Footing
-from odometry.terrain_sources import ReplayedFooting
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN, Run
+from odometry.recording.run_terrains import Footing
+from odometry.replays.estimates import Replay
+from odometry.replays.learned_parameters import learned_parameters
+from odometry.replays.pipeline import Estimator, replay
+from odometry.replays.terrain_sources import ReplayedFooting
 from terrain.result.contradictions_so_far import Contradiction
 from terrain.result.run_result import RunResult
 

@@ -13,7 +13,7 @@ from odometry.evaluation.open_loop_errors import SOURCES
 from odometry.evaluation.reference_yaw import counted_reference_yaw
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S
 from odometry.fixes.origin import stated_origin
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.result.evaluated import is_used_by_filter
 from terrain.result.evaluation_notes import advice, filter_table, verdict
 from terrain.result.label_confusion import label_confusion_table

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from odometry.set_of_robot import set_notes
 from terrain.classification.answer import (
     DOUBTFUL,

@@ -6,13 +6,13 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 from odometry.checks.findings.finding import CheckReport
-from odometry.estimates import Replay
 from odometry.evaluation.odometer_uncertainty import OdometerUncertainty
 from odometry.evaluation.relative import position_errors
 from odometry.evaluation.score import Score
 from odometry.evaluation.stretches import Stretch, stretches
 from odometry.parameters import ParameterSet
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
+from odometry.replays.estimates import Replay
 from odometry.trajectory import Trajectory
 from terrain.config import Config
 from terrain.result.contradictions_so_far import Contradiction

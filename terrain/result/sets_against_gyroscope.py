@@ -10,8 +10,8 @@ import numpy as np
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.effects.tables import model_of
 from odometry.parameters import TerrainParameters
-from odometry.run import Run
-from odometry.sensors import YawRate
+from odometry.recording.run import Run
+from odometry.recording.sensors import YawRate
 from odometry.windows.recorded.run_inputs import inputs_of
 from odometry.windows.travel.motion_ratios import (
     FEWEST_WINDOWS,

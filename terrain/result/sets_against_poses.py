@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.effects.tables import model_of
 from odometry.errors import WindowError
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.motion_ratios import (
     FEWEST_WINDOWS,

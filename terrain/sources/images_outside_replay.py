@@ -1,8 +1,8 @@
 """Images that a replay does not come to: before its start and after its end."""
 
-from odometry.estimates import Replay
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.replays.estimates import Replay
+from odometry.tables.table import Table
 from terrain.image_labels.image_label import ImageLabel
 from terrain.sources.watcher import TerrainWatcher
 

@@ -15,9 +15,9 @@ from odometry.modes.models.mode_set_file import read_mode_set
 from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
 from odometry.parameters import ParameterSet
-from odometry.pipeline import ConstantTerrain, TerrainSource
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN, Run
-from odometry.terrain_sources import NamedTerrain, labelled_terrain
+from odometry.recording.run import UNKNOWN, UNNAMED_TERRAIN, Run
+from odometry.replays.pipeline import ConstantTerrain, TerrainSource
+from odometry.replays.terrain_sources import NamedTerrain, labelled_terrain
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classifier
 from terrain.config import Config

@@ -10,10 +10,10 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.estimation.estimate import Estimate
 from odometry.estimation.transition import moved_pose
-from odometry.frames import Frame
 from odometry.geometry import se2
-from odometry.run import UNKNOWN, Robot
-from odometry.run_terrains import Footing
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN, Robot
+from odometry.recording.run_terrains import Footing
 from terrain.camera.camera import Camera
 from terrain.classification.answer import Classifier
 from terrain.image_labels.distance_track import DistanceTrack

@@ -9,7 +9,7 @@ import numpy as np
 from odometry.arrays import FloatArray, IntArray
 from odometry.feel.labels.felt import FeltWindows
 from odometry.feel.recorded.windows import STEPS
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.switch.place_labels import PlaceLabel
 
 

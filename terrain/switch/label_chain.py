@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 # chosen with simulated labels, half of whose drives were kept for the figures
 UNNAMED = 0.03  # of the ways that end, so many end on a terrain that has no name

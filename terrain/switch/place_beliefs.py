@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.switch.label_chain import given_to, of_any_place, smoothed
 from terrain.switch.place_labels import PlaceLabel, along_way
 

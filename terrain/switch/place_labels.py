@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 DRIFT = 0.03  # metres per metre: usual error of an odometer on its way to a labelled place
 

@@ -9,8 +9,8 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.config import require, require_positive
 from odometry.geometry import se2
-from odometry.run import UNKNOWN
-from odometry.run_terrains import Footing
+from odometry.recording.run import UNKNOWN
+from odometry.recording.run_terrains import Footing
 from terrain.switch.label_chain import carried
 from terrain.switch.place_beliefs import LEAST, PlaceBeliefs, by_evidence, by_rows
 from terrain.switch.place_labels import DRIFT, Footprint, PlaceLabel, nearest

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from odometry.gap.gap import find_gap
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.cases import make_case
 
 

@@ -9,7 +9,7 @@ from filterpy.kalman import ExtendedKalmanFilter
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.transition import STATES
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 SETTINGS = {"as it comes": {}, "as published": PAPER}
 

@@ -19,7 +19,7 @@ from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances
 from odometry.windows.travel.windows import windows_of

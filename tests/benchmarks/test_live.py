@@ -8,7 +8,7 @@ import pytest
 
 import odometry
 import terrain
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 DATA = Path(__file__).parents[2] / "data"
 ROUNDS, IMAGES = 1000, 30

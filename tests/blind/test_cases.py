@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.cases import FORMULA, KINDS, NAMES, NONE, PAIRS, UNKNOWN, make_case
 from tests.blind.formula_cases import draw_formula_case
 from tests.blind.robot import Icrs

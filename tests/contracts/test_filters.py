@@ -12,8 +12,8 @@ from scipy.stats import chi2
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.recording.frames import Frame
 
 WIDTH = 0.5
 ICRS = np.array([0.42, -0.33, 0.06])

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from tests.contracts.model_draws import draws, inputs_, values_of
 from tests.contracts.test_models import CONVENTIONS, INERTIA, each_model, ordinary
 

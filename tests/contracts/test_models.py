@@ -10,7 +10,7 @@ import pytest
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS, PARAMETER_NAMES
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 # Names as the table in data/README.md spells them, units, and an ordinary value with a spread.
 ICR = {

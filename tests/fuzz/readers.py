@@ -15,9 +15,9 @@ from odometry.io.tum import read_tum
 from odometry.modes.follow.track import follow_modes
 from odometry.modes.models.mode_set_file import read_mode_set, write_mode_set
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.run_inputs import inputs_of
 from odometry.windows.travel.windows import windows_of

@@ -10,7 +10,7 @@ from odometry.io.structured import read_json, read_toml
 from odometry.io.tum import read_tum
 from odometry.modes.models.mode_set_file import read_mode_set
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.vehicle import read_contact_vehicle
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config

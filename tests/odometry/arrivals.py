@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.table import Table
+from odometry.tables.table import Table
 
 
 def in_order(stamps_s):

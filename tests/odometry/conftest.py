@@ -17,8 +17,8 @@ from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import floor_of, gap_of
 from odometry.gap.prepare.uncertain_base import Uncertain
 from odometry.models.icr import Icr
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.windows.dense.dense import dense_windows_of
 from odometry.windows.dense.dense_noise import Noise
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 ICR = {"y_left": 0.45, "y_right": -0.38, "x_icr": 0.06, "alpha_left": 0.95, "alpha_right": 0.92}
 ROBOT = Robot(track_width=0.6)

@@ -9,7 +9,7 @@ import pytest
 from odometry.errors import ExtraError
 from odometry.installed import extra_module
 from odometry.io.csv_table import read_csv_table, write_csv_table
-from odometry.table import Table
+from odometry.tables.table import Table
 
 
 def test_a_missing_package_is_named_with_its_extra():

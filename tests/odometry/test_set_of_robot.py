@@ -4,7 +4,7 @@ import pytest
 
 from odometry.installed import shipped_data
 from odometry.parameters import ParameterSet, TerrainParameters, read_parameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.set_of_robot import set_notes
 
 ICRS = {"y_left": 0.35, "y_right": -0.33, "x_icr": 0.0}

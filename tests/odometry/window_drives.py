@@ -9,8 +9,8 @@ import pytest
 
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 
 TRACK_WIDTH = 0.5

@@ -12,8 +12,8 @@ import numpy as np
 from odometry.comparison.evaluation import evaluation_windows
 from odometry.comparison.split import parts_by_terrain
 from odometry.models.catalogue import MODELS
-from odometry.run import Run
-from odometry.run_terrains import with_named_terrain
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.window_errors import window_errors
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.gaps import odometry_gaps
 
 CUT_S = 2.0

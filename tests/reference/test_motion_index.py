@@ -15,7 +15,7 @@ from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Run
+from odometry.recording.run import Run
 
 WINDOWS = EvaluationConfig(horizon_m=2.0, stride_m=2.0)
 

@@ -10,8 +10,8 @@ import pytest
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.recording.frames import Frame
 
 pytest.importorskip("stonesoup", reason="Stone Soup is not installed: it is in the extra `test`")
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.recording.frames import Frame
 
 WIDTH = 0.5
 TO_CHEN = np.diag([1.0, 1, 1, 1, 1, -1])  # x_G = -x_icr

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import IcrEkfConfig
-from odometry.speed_step import speed_step_m_s, with_speed_step
+from odometry.estimation.speed_step import speed_step_m_s, with_speed_step
 from terrain.main_job import run_odometry
 from tests.odometry.checks.drives import PERIOD_S, WIDTH_M, drive
 

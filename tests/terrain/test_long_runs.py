@@ -5,13 +5,13 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from odometry.estimates import Replay
 from odometry.estimation.estimate import Estimate, Innovation
 from odometry.estimation.kept_estimates import KeptEstimates
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.score import reference_of
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.estimates import Replay
 from terrain.config import Config
 from terrain.result.run_result import RunResult
 

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.region.region import RegionConfig

@@ -3,7 +3,7 @@
 import pytest
 
 from odometry.errors import OdometryError, RunFolderError
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.errors import CameraError, ModelFileError
 from terrain.main_job import run_odometry
 

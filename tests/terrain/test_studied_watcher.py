@@ -3,7 +3,7 @@
 import numpy as np
 
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.pipeline import replay
+from odometry.replays.pipeline import replay
 from terrain.config import Config
 from tests.studies.main_job.switching_courses import LabellingWatcher, make_course
 

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from odometry.feel.recorded.signals import AXES
 from odometry.feel.recorded.windows import feel_windows
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.ground import GroundMap
 from terrain.camera.camera import Camera
 from terrain.classification.photographs.patches import find_photos

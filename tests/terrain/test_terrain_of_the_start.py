@@ -6,7 +6,7 @@ import pytest
 
 from odometry.errors import ParameterError
 from odometry.parameters import ParameterSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.main_job import run_odometry
 from terrain.result.run_notes import run_notes
 from tests.terrain.test_run_odometry import SET

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.main_job import run_odometry
 from tests.blind.any_robot import write_clean_run
 from tests.studies.main_job.estimation_steps import PARAMETERS

@@ -5,7 +5,7 @@ from odometry.checks.copies.copied_turns import copied_turns, without_gyroscope
 from odometry.checks.copies.copied_yaw import copied_yaw
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding
-from odometry.run import Run
+from odometry.recording.run import Run
 
 NO_GYROSCOPES = frozenset({"gyroscope_is_treads", "gyroscope_is_yaw"})
 

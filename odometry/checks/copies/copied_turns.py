@@ -11,8 +11,8 @@ from odometry.checks.copies.repetition import Repetition, repetition
 from odometry.checks.copies.weighted_rows import explained_by_rows, left_by_own_rows
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 
 # Shares of the squares explained, of the second differences and of the values: 0.01 of the former
 # at most in 74 real recordings, 0.02 in simulated ones with ordinary noise. Copies reach 1, through

@@ -17,7 +17,7 @@ from odometry.checks.copies.copied_turns import (
 from odometry.checks.copies.repetition import Repetition, repetition
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Run
+from odometry.recording.run import Run
 
 LEAST_POSES = 100
 MORE_ROWS = 1.5

@@ -11,7 +11,7 @@ from odometry.checks.evidence.motion import Integrals, Motion, integrals, motion
 from odometry.checks.evidence.scatter import scattered
 from odometry.checks.statistics.measured_between import gaps_between
 from odometry.checks.statistics.outliers import excursions, pose_outliers, without_spikes
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.gaps import odometry_gaps
 from odometry.windows.recorded.in_motion import moving_samples
 from odometry.windows.recorded.spans import touched

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.spans import touched
 
 WINDOW_S = 0.5  # long against the jitter of stamps, short against a turn

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.arrays import FloatArray
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 
 Mend = Callable[[Run], Run]
 Course = Callable[[FloatArray], FloatArray]

@@ -15,8 +15,8 @@ from odometry.checks.imu.gyroscope_by_poses import headings_apart
 from odometry.checks.statistics.relation import relation
 from odometry.checks.turns.heading_spans import HeadingSpans, heading_spans
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
-from odometry.run import Run
-from odometry.sensors import GYRO_AXES
+from odometry.recording.run import Run
+from odometry.recording.sensors import GYRO_AXES
 
 SPANS_S = (5.0, 1.5)  # over which both are compared
 ENDS = 0.1, 0.9  # quantiles of the rates that are compared

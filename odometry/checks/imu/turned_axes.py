@@ -9,8 +9,8 @@ from odometry.arrays import ComplexArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.feel.recorded.signals import ACCEL, in_robot_frame
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 
 BLOCK_S = 0.5  # longer than vibration and stamps that are off, shorter than slopes and legs
 TURNED = math.radians(45.0)

@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.checks.evidence.motion import Motion
 from odometry.checks.findings.undo import TREADS
 from odometry.checks.parts.span import Span
-from odometry.run import Run
+from odometry.recording.run import Run
 
 YAW, RATE = ("yaw",), ("gyro_x", "gyro_y", "gyro_z")
 

@@ -12,7 +12,7 @@ from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS, Mend, changed
 from odometry.checks.parts.scale_courses import ScaleCourses, WayClock
 from odometry.checks.turns.measured_turns import measured_turns
-from odometry.run import Run
+from odometry.recording.run import Run
 
 # What a course of the scale of one tread leaves, as a share of what constant scales leave, and of
 # what the same course of the other tread, of the width or of a pull to one side leaves at least. By

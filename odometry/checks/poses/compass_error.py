@@ -14,7 +14,7 @@ from odometry.checks.findings.undo import Mend, changed
 from odometry.checks.poses.position_frame import position_frame
 from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.turns.heading_spans import HeadingSpans, heading_spans
-from odometry.run import Run
+from odometry.recording.run import Run
 
 SPANS_S = (5.0, 1.5)
 LEAST_BEND_RAD = np.radians(6)

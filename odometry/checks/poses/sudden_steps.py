@@ -15,7 +15,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.poses.steps import JITTER_S, first_ones, moments
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.windows.recorded.spans import runs_of
 
 ROWS = 5  # on each side of a step, which have a line of the same slope each

@@ -12,7 +12,7 @@ from odometry.checks.evidence.once import once
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import Mend
 from odometry.checks.turns.gyroscope_bias import stationary_bias
-from odometry.run import Run
+from odometry.recording.run import Run
 
 MOST_RAD_S, LEAST_RAD_S = 0.15, 0.01
 STEP_RAD = 0.25  # over the recording, between two rates that are tried

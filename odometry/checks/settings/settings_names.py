@@ -7,7 +7,7 @@ from typing import Any
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 ALIKE = 0.8
 TABLES = ("robot", "run", "camera", "sensors")

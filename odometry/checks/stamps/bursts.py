@@ -8,8 +8,8 @@ import numpy as np
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.row_values import repeat_values
-from odometry.run import Run, with_stamps
+from odometry.recording.run import Run, with_stamps
+from odometry.tables.row_values import repeat_values
 
 CLOSE = 0.2  # of the mean period, that rows of one burst are apart at most
 MOST_CLOSE = 0.45  # share of the rows that follow so close: in pairs half of them do

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.windows.recorded.spans import runs_of
 
 # Of the rows that have a value, at least: a file that holds two sensors has empty cells by rights.

@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.row_values import are_changes
+from odometry.tables.row_values import are_changes
 from odometry.windows.recorded.gaps import odometry_gaps
 
 OFTEN = 20

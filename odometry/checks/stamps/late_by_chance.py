@@ -8,8 +8,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.stamps.bursts import TWO_OF_EACH
 from odometry.checks.stamps.timing import LEAST_LAG_S, lags_of
-from odometry.late_rows import NEARLY_ALL, LateRows, late_rows
-from odometry.run import Run, with_table
+from odometry.recording.run import Run, with_table
+from odometry.tables.late_rows import NEARLY_ALL, LateRows, late_rows
 from odometry.windows.recorded.spans import runs_of
 
 WARNED_S = 0.03  # standard deviation: that of rows in bursts 0.1 s apart, from which is warned

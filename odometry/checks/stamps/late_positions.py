@@ -18,7 +18,7 @@ from odometry.checks.findings.undo import changed
 from odometry.checks.statistics.lag import Lag, Rate, lag_of_rates
 from odometry.checks.statistics.measured_between import measured_between
 from odometry.positions.timing import timings_of
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.gaps import odometry_gaps
 
 LEAST_WIDTH_S = 0.5

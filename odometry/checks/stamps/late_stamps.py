@@ -7,7 +7,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.undo import TREADS, Mend, changed, in_turn, sooner
 from odometry.checks.statistics.lag import Lag
-from odometry.run import Run
+from odometry.recording.run import Run
 
 GRID_S = 0.02
 CONSTANTS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5)

@@ -6,8 +6,8 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.stamps.bursts import TWO_OF_EACH
 from odometry.checks.stamps.stamps import tables_of
-from odometry.row_values import are_copies, take_turns
-from odometry.table import Table
+from odometry.tables.row_values import are_copies, take_turns
+from odometry.tables.table import Table
 
 FEW = 0.2  # share of the rows, up to which those that are left are of their times
 

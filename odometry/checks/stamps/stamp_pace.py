@@ -12,7 +12,7 @@ import numpy as np
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.findings.unit_tables import ORDINARY_FORWARD
-from odometry.run import Run
+from odometry.recording.run import Run
 
 LEAST = 1.4  # factor: nearer ones may be the gyroscope's and the wheels' own
 ALIKE = (0.6, 1.2)  # metres for each metre of the treads, with the pace undone

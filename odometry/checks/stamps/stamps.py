@@ -7,9 +7,9 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level, counted
-from odometry.row_values import are_copies
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.row_values import are_copies
+from odometry.tables.table import Table
 
 LONGEST_PERIOD_S = 20.0  # poses or images are hardly slower, where odometry.csv is of another time
 LONGEST_ODOMETRY_PERIOD_S = 2.5  # nor are treads that are logged evenly

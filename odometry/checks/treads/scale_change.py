@@ -15,7 +15,7 @@ from odometry.checks.statistics.relation import Relation, relation
 from odometry.checks.treads.scaled_span import scaled_span
 from odometry.checks.turns.constancy import uneven_way
 from odometry.checks.turns.measured_turns import measured_turns
-from odometry.run import Run
+from odometry.recording.run import Run
 
 CHANGED = 1.4  # ratio of what a metre moves; in 23 real recordings along and in turns at most 1.3
 ALIKE = 0.35  # share of that change, as a logarithm, by which the change in turns may differ

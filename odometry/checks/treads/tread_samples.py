@@ -10,7 +10,7 @@ from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import TREADS, changed, in_turn
 from odometry.checks.statistics.outliers import peaks, spikes
 from odometry.checks.treads.slow_speeds import EDGE, least_read_m_s
-from odometry.speed_step import step_of, tick_of
+from odometry.estimation.speed_step import step_of, tick_of
 from odometry.windows.recorded.spans import runs_of
 
 DROPPED = 0.001  # share of samples that are lost, from which it is a warning

@@ -8,7 +8,7 @@ from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Finding, Level
 from odometry.checks.turns.turn_signs import lasting_turn_rad
-from odometry.speed_step import speed_step_m_s, tick_of
+from odometry.estimation.speed_step import speed_step_m_s, tick_of
 
 COARSE = 0.1  # a step of the readings as a share of the ordinary fastest speed
 STILL_RAD = 0.1  # range of the heading of a stationary robot

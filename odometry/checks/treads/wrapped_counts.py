@@ -7,7 +7,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.checks.findings.finding import Finding, Level, counted
 from odometry.checks.findings.undo import TREADS, changed, in_turn
-from odometry.run import Run
+from odometry.recording.run import Run
 
 FAST, ORDINARY = 3.0, 0.9  # times the speed below which so many rows are
 # Samples of one tread: six that come anywhere agree by REGULAR in one of 120 draws.

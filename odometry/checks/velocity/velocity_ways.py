@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.checks.evidence.evidence import Evidence
-from odometry.table import Table
+from odometry.tables.table import Table
 
 NAMES = ("vx", "vy", "wz")
 LONGEST_S, PERIODS = 0.5, 5.0  # between two velocities: across more than both nothing is known

@@ -8,7 +8,7 @@ from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.icr import Icr, IcrByTerrain
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from odometry.effects.interface.recorded import Reported
 from odometry.models.base import KinematicModel, Linearised
 from odometry.models.icr import IcrByTerrain
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 RELATIVE_STEP = 1e-6
 

@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.effects.interface.base_model import Base
 from odometry.models.inputs import Inputs
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 CRAWLING_M_S = 0.25  # fastest speed down to which searches of speeds are as for fast robots
 

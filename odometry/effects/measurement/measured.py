@@ -12,7 +12,7 @@ from odometry.effects.interface.recorded import Reported
 from odometry.effects.measurement.sensor_mount import LeverArm
 from odometry.errors import ParameterError
 from odometry.geometry.angles import wrap
-from odometry.run import Run
+from odometry.recording.run import Run
 
 POSE_NAMES = ("x", "y", "yaw")
 

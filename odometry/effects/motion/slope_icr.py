@@ -8,7 +8,7 @@ from odometry.effects.interface.base_model import Base, slip_factors, tread_icrs
 from odometry.effects.interface.recorded import Recorded
 from odometry.models.icr_slope import GUESSED_HALF_LENGTH, IcrSlope
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 MODEL = IcrSlope()
 LEAST_TILT_RAD = 0.01  # of the steepest terrain: less is level

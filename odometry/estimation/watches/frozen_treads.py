@@ -19,7 +19,7 @@ from odometry.estimation.transition import (
     X,
     Y,
 )
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 FROZEN_S = 2.0  # for so long the gyroscope must say so
 # By which treads differ in a turn; and by more than their mean speed: treads that differ by less go

@@ -25,7 +25,7 @@ from odometry.estimation.watches.rest_watch import RestWatch
 from odometry.estimation.watches.slip_watch import SlipWatch
 from odometry.estimation.watches.stuck_watch import StuckWatch
 from odometry.estimation.watches.tread_watch import TreadWatch
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 Events = tuple[FilterEvent, ...]
 

@@ -9,7 +9,7 @@ from odometry.estimation.measurement import Gaussian
 from odometry.estimation.noise_scale import width_sigma_m
 from odometry.estimation.transition import ALPHA_LEFT, ALPHA_RIGHT, GYRO_BIAS, Y_LEFT, Y_RIGHT
 from odometry.estimation.watches.rest_watch import STILL_M_S
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 JUMP_M_S, JUMP_M_S2 = 3.0, 10.0  # a change of speed by more needs a second row that agrees
 SAME_S, CONTRADICTED_S = 0.5, 1.0  # for so long a reading must stay the same, then contradict

@@ -10,7 +10,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.classifier.design import LEAST_STEPS, Design
 from odometry.feel.recorded.spectra import LEAST_POWER, LOWEST_HZ, band_edges_hz, pair_rows
 from odometry.feel.recorded.windows import FeelWindows
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 BANDS = 12
 LEAST_RUNS = 8  # of fewer the usual shape is not known

@@ -11,7 +11,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.feel.classifier.design import Design
 from odometry.feel.classifier.discriminant import Moments, moments_of
 from odometry.feel.recorded.windows import FeelWindows
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 
 @dataclass(frozen=True)

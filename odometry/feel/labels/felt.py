@@ -12,7 +12,7 @@ from odometry.feel.assessment.held_out import Scores
 from odometry.feel.classifier.strangeness import SURE
 from odometry.feel.model import FeelModel, Probabilities, Summed
 from odometry.feel.recorded.windows import FeelWindows, joined_windows, windows_since
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 STATIONARY, UNDETERMINED, NOT_MEASURED = "stationary", "undetermined", "not measured"
 SILENT = (STATIONARY, UNDETERMINED, NOT_MEASURED)

@@ -14,7 +14,7 @@ from odometry.feel.labels.felt import NOT_MEASURED, SILENT, STATIONARY
 from odometry.feel.labels.follow import Felt
 from odometry.io.csv_table import write_csv_table
 from odometry.io.files import atomic_write
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 UNLIKE_SHARE = 0.5  # of the windows: a run with more that are unknown is unlike those of the model
 OFTEN = 0.05  # share of the windows from which a sentence is written

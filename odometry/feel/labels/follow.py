@@ -15,7 +15,7 @@ from odometry.feel.labels.felt import (
 )
 from odometry.feel.model import FeelModel
 from odometry.feel.recorded.windows import FeelWindows, feel_windows
-from odometry.run import UNKNOWN, Robot, Run
+from odometry.recording.run import UNKNOWN, Robot, Run
 
 UNLIKE_SHARE = 0.5  # of the time: a run of which more is unknown is of no terrain of the model
 MOST_REPEATS = 0.3  # of samples; real recordings repeat 0.02, rounded to 0.02 rad/s 0.33 and more

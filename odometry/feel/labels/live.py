@@ -21,9 +21,9 @@ from odometry.feel.recorded.signals import (
     usual_rate_hz,
 )
 from odometry.feel.recorded.windows import steps_of, windows_of
-from odometry.frames import Frame
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
-from odometry.run import UNKNOWN, Robot
+from odometry.recording.frames import Frame
+from odometry.recording.run import UNKNOWN, Robot
 from odometry.windows.recorded.gaps import GapsSoFar
 
 LATE_S = 5.0  # rows that come later than this after the frame of a window's end are too late

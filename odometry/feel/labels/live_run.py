@@ -11,7 +11,7 @@ from odometry.feel.labels.follow import Felt, follow_feel
 from odometry.feel.labels.live import LiveFeel
 from odometry.feel.model import FeelModel
 from odometry.feel.recorded.signals import ACCEL, CURRENTS, GYRO, axes_of
-from odometry.run import Run
+from odometry.recording.run import Run
 
 
 def follow_feel_live(run: Run, model: FeelModel, config: FeelConfig | None = None) -> Felt:

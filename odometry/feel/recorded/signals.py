@@ -10,9 +10,9 @@ from odometry.errors import RunFolderError
 from odometry.feel.recorded.clock_check import clock_fault
 from odometry.feel.recorded.imu_check import ImuSums
 from odometry.geometry.se3 import rotation_from_roll_pitch_yaw
-from odometry.run import Run
-from odometry.run_terrains import row_terrains
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import row_terrains
+from odometry.tables.table import Table
 from odometry.windows.recorded.gaps import odometry_gaps
 
 GYRO = ("gyro_x", "gyro_y", "gyro_z")

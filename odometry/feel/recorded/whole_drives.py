@@ -8,7 +8,7 @@ import numpy as np
 
 from odometry.arrays import BoolArray, IntArray
 from odometry.feel.recorded.windows import FeelWindows
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 PAUSE_S = 10.0  # between parts: within it a robot is brought to no other place
 OVERLAP_S = 1.0  # of parts, whose messages are late by unlike times

@@ -11,7 +11,7 @@ from odometry.errors import RunFolderError
 from odometry.feel.recorded.motion_features import current_features, speed_covariates, yaw_features
 from odometry.feel.recorded.signals import AXES, FeelSignals, feel_signals
 from odometry.feel.recorded.spectra import cross_densities
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 SHORTEST_S, LONGEST_S = 1.0, 5.0
 STANDING_M_S = 0.03  # mean speed of the treads in a window; below it the robot is stationary

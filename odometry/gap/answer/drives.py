@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.effects.interface.base_model import Base
 from odometry.gap.config import GapConfig
 from odometry.models.inputs import Inputs
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from odometry.windows.dense.dense import DenseWindows
 from odometry.windows.travel.motion import level_path
 

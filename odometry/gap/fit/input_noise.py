@@ -14,7 +14,7 @@ from odometry.arrays import FloatArray
 from odometry.gap.fit.contest import cost_of
 from odometry.gap.fit.fitter import Fitted
 from odometry.gap.prepare.measured import Measured
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.dense.dense import DenseWindows
 
 SEED = 0

@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.effects.interface.base_model import Base
 from odometry.effects.interface.corrected import Added, corrected_twist
 from odometry.geometry.angles import wrap
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from odometry.windows.dense.dense import DenseWindows
 
 CREEPING_M_S = 0.05  # below this forward speed a curvature is taken as at it

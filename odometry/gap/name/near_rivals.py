@@ -15,7 +15,7 @@ from odometry.gap.fit.input_noise import noise_of_windows, scatter_of_noise
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.form_gates import farthest_off_s
 from odometry.gap.prepare.statistic import sure_sum
-from odometry.sensors import gyroscope_of
+from odometry.recording.sensors import gyroscope_of
 
 LATE_TREADS = (ActuatorLag.name, CommandDelay.name)
 

@@ -22,7 +22,7 @@ from odometry.gap.solve import (
     with_jacobian,
 )
 from odometry.models.base import KinematicModel
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from odometry.windows.dense.dense import DenseWindows
 from odometry.windows.dense.dense_noise import Noise, estimated_noise, whitening
 

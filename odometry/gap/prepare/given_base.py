@@ -6,7 +6,7 @@ from odometry.errors import GapError, WindowError
 from odometry.gap.prepare.calibration import Calibration
 from odometry.gap.prepare.statistic import floor_of, gap_of
 from odometry.models.base import KinematicModel
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.dense.dense import DenseWindows
 from odometry.windows.travel.motion_ratios import FEWEST_WINDOWS, HORIZON_M, motion_ratios

@@ -24,7 +24,7 @@ from odometry.gap.prepare.statistic import Gap, Measure, floor_of
 from odometry.identification.identify import robot_of
 from odometry.models.base import KinematicModel
 from odometry.positions.heading import headed
-from odometry.run import Run
+from odometry.recording.run import Run
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.positions.rounding import LEAST_STEP_M, exact_steps_m, rounding_step_m
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.dense.dense import DenseWindows
 
 

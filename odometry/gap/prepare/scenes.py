@@ -16,7 +16,7 @@ from odometry.gap.prepare.measured import with_fewer_poses
 from odometry.gap.prepare.outliers import Outliers, closes, outliers_of
 from odometry.gap.prepare.rounding import rounded_m
 from odometry.positions.heading import Headed
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.dense.averaged import averaged_windows
 from odometry.windows.dense.dense import DenseWindows, covered_s, dense_windows_of
 

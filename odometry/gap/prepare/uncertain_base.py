@@ -13,7 +13,7 @@ from odometry.errors import GapError, ParameterError
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS, model_named
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.set_of_robot import other_width
 
 LONGEST_LATENCY_S = 1.0

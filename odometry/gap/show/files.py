@@ -24,7 +24,7 @@ from odometry.gap.prepare.statistic import Gap
 from odometry.gap.show.words import moves_of
 from odometry.io.files import atomic_write
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import UNKNOWN, UNNAMED_TERRAIN
+from odometry.recording.run import UNKNOWN, UNNAMED_TERRAIN
 
 FORMAT = 1  # of gap.json
 # No part of the model of another run.

@@ -5,7 +5,7 @@ import numpy as np
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.modes.follow.mode_track import ModeTrack
 from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 
 def named_modes(track: ModeTrack, sure: float) -> AnyArray:

@@ -10,7 +10,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.errors import ParameterError
 from odometry.estimation.imm.markov import ModeChain
 from odometry.io.csv_table import read_csv_table
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 NO_LABELS = ("", "nan", UNKNOWN)  # a column without any is one of numbers
 BLIND_LENGTHS = 3.0  # of the robot, after which a label is of another place

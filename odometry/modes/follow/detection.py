@@ -9,7 +9,7 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.modes.follow.answers import candidates, named_modes
 from odometry.modes.follow.mode_track import ModeTrack
 from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from odometry.feel.model import FeelModel
 from odometry.feel.recorded.windows import STEPS
 from odometry.modes.follow.mode_track import ModeTrack
 from odometry.modes.modes_config import ModesConfig
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 
 @dataclass(frozen=True)

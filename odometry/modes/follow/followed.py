@@ -16,7 +16,7 @@ from odometry.modes.follow.track import follow_signals, judged_signals
 from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED, ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.recorded.bank_inputs import Signals
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 BOUND = 2.0  # standard deviations: 95 % of what is left of a mode that is true
 

@@ -19,7 +19,7 @@ from odometry.modes.models.innovation_test import Innovations, mode_fit
 from odometry.modes.models.mode_set import ModeSet
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.recorded.bank_inputs import Signals
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.spans import within
 
 __all__ = ["ModeTrack", "ModesConfig", "follow_modes", "follow_signals", "judged_signals"]

@@ -9,7 +9,7 @@ from odometry.arrays import FloatArray
 from odometry.errors import RunFolderError
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.recorded.bank_inputs import velocity_signals
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 
 BLOCK_S = 1.0  # of means: a lag of the yaw rate matters little
 LEAST_SIGMAS = 5.0  # by which a gain differs from 0: terrains differ by less than its error else

@@ -19,7 +19,7 @@ from odometry.modes.recorded.bank_inputs import pose_signals
 from odometry.modes.recorded.measured_steps import LEAST_STEPS, StepWindows, step_windows
 from odometry.modes.recorded.pose_steps import AHEAD, ASIDE, TURN, PoseSteps, pose_steps
 from odometry.modes.recorded.turning_points import STEP_M
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.spans import runs_of
 
 WINDOW_S = 8.0  # those of 4 s leave more to noise, those of 16 s are too few

@@ -9,7 +9,6 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray, IntArray
 from odometry.identification.identify import robot_of
-from odometry.independent_runs import check_no_run_twice
 from odometry.models.icr import GUESSED_WIDTHS
 from odometry.modes.identify.held_out_centres import centre_errors
 from odometry.modes.identify.held_out_gains import gain_errors
@@ -22,7 +21,8 @@ from odometry.modes.models.yaw_rate_noise import (
     YawRateStretch,
     estimated_yaw_rate_noise,
 )
-from odometry.run import Run
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import Run
 from odometry.windows.dense.dense import DenseWindows, off_measured, poses_at
 from odometry.windows.dense.dense_noise import FIRST_GUESS, Noise, estimated_noise, whitening
 from odometry.windows.travel.motion import level_path

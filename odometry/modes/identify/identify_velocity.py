@@ -8,7 +8,6 @@ from tqdm import tqdm
 from odometry.arrays import FloatArray
 from odometry.errors import IdentificationError
 from odometry.identification.identify import robot_of
-from odometry.independent_runs import check_no_run_twice
 from odometry.modes.identify.gain_spread import gain_spread
 from odometry.modes.identify.held_out_turns import turn_errors
 from odometry.modes.identify.mode_windows import stretches_by_label
@@ -28,7 +27,8 @@ from odometry.modes.recorded.bank_inputs import (
     forward_speed_m_s,
     velocity_signals,
 )
-from odometry.run import UNKNOWN, Run
+from odometry.recording.independent_runs import check_no_run_twice
+from odometry.recording.run import UNKNOWN, Run
 
 LEAST_S = 10.0  # of a terrain
 SPEED, OMEGA = range(2)  # rows of A and B, columns of a record

@@ -10,8 +10,8 @@ from odometry.errors import IdentificationError, WindowError
 from odometry.modes.models.traction import LEFT_TURN, RIGHT_TURN, turns_of
 from odometry.modes.models.yaw_rate_noise import YawRateStretch, yaw_rate_stretch_of
 from odometry.modes.recorded.bank_inputs import NO_YAW, STANDING_M_S
-from odometry.run import UNKNOWN, Run
-from odometry.run_terrains import row_terrains
+from odometry.recording.run import UNKNOWN, Run
+from odometry.recording.run_terrains import row_terrains
 from odometry.windows.dense.dense import DenseWindows, dense_windows_of, thinned
 from odometry.windows.recorded.gaps import odometry_gaps
 

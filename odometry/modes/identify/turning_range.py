@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from odometry.modes.recorded.turning_points import turning_points
-from odometry.run import Run
+from odometry.recording.run import Run
 
 LEAST_WINDOWS = 100  # they end each half second
 

@@ -10,7 +10,7 @@ from odometry.modes.models.traction import TractionModes, twists_of
 from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.modes_config import ModesConfig
 from odometry.modes.recorded.bank_inputs import STANDING_M_S
-from odometry.run import Run
+from odometry.recording.run import Run
 
 SURE = ModesConfig.sure  # of one of two modes that were as probable before
 LOG_ODDS = float(np.log(SURE / (1 - SURE)))

@@ -6,7 +6,7 @@ from odometry.arrays import FloatArray
 from odometry.errors import ParameterError
 from odometry.modes.models.traction import TractionModes
 from odometry.modes.models.velocity import VelocityModes
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 UNDETERMINED, NONE_OF_THESE = "undetermined", "none of these"
 NO_MODES = (NONE_OF_THESE, UNDETERMINED)  # answers that name none

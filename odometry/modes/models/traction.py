@@ -20,7 +20,7 @@ from odometry.modes.recorded.bank_inputs import (
     pose_signals,
 )
 from odometry.modes.recorded.faster import with_faster_spans
-from odometry.run import Run
+from odometry.recording.run import Run
 
 MEASURED = np.hstack([np.eye(4), np.array([[0.0], [0.0], [0.0], [1.0]])])  # yaw rate and bias
 

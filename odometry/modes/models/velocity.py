@@ -16,7 +16,7 @@ from odometry.modes.recorded.bank_inputs import (
     Signals,
     velocity_signals,
 )
-from odometry.run import Run
+from odometry.recording.run import Run
 
 STEP_RESOLUTION_S = 1e-6
 FASTEST_GROWTH_HZ = 10.0  # of a model that is no slip of the pen

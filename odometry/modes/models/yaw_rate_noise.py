@@ -10,7 +10,7 @@ from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.models.response import BLOCK_S, LEAST_VARIANCE, block_means, lagged
 from odometry.modes.models.traction import twists_of
 from odometry.modes.recorded.bank_inputs import STANDING_M_S, accelerations_m_s2, yaw_rates_of
-from odometry.run import Run
+from odometry.recording.run import Run
 
 LASTING_S = 5.0  # for which an error of gains may stay the same: as long as a turn
 NOT_MEASURED = 1.0  # [rad^2/s^2] where no run has a gyroscope: it hardly counts

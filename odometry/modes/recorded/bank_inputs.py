@@ -15,8 +15,8 @@ from odometry.modes.recorded.measured_steps import (
     measured_turn,
 )
 from odometry.modes.recorded.turning_points import TurningPoints, turning_points
-from odometry.run import Run
-from odometry.run_terrains import row_terrains
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import row_terrains
 from odometry.windows.recorded.blocked_turns import blocked_spans
 from odometry.windows.recorded.gaps import odometry_gaps
 from odometry.windows.recorded.turns import continuous_yaw

@@ -13,8 +13,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.geometry.angles import wrap
-from odometry.run import Run
-from odometry.sensors import YawRate, gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import YawRate, gyroscope_of
 from odometry.windows.recorded.measured_poses import YAW_FOUND
 
 WINDOW_S, EVERY_S = 5.0, 0.5

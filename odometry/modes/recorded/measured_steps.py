@@ -6,8 +6,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.modes.recorded.heading_check import without_spikes
-from odometry.run import Run
-from odometry.sensors import gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import gyroscope_of
 from odometry.windows.recorded.gaps import odometry_gaps
 from odometry.windows.recorded.spans import touched
 from odometry.windows.recorded.turns import continuous_yaw

@@ -12,7 +12,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.modes.recorded.measured_steps import LEAST_STEPS, step_windows
 from odometry.modes.recorded.pose_steps import ASIDE, TURN, PoseSteps, pose_steps
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.measured_poses import YAW_FOUND
 
 WINDOW_S = 16.0

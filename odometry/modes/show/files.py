@@ -19,7 +19,7 @@ from odometry.modes.models.innovation_test import ModeFit
 from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE
 from odometry.modes.show.doubts import doubts, not_checked
 from odometry.modes.show.words import answer_words
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 NUMBERS = ("median_after_s", "right", "wrong", "undetermined", "wrong_of_all", "none_of_these")
 COUNTS = ("stretches", "told", "false_switches")

@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from odometry.io.files import atomic_write
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 
 # Tints of P. Tol's "light" scheme: black text and dark lines stay readable on them.
 TERRAIN_TINTS = (

@@ -9,8 +9,8 @@ from matplotlib.patches import Ellipse, Rectangle
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.icrs.measured import IcrMedian, MeasuredIcrs, icr_medians
+from odometry.recording.run import Robot
 from odometry.report.drawing.labels import HALO
-from odometry.run import Robot
 
 TURN_STYLES: dict[str, dict[str, Any]] = {
     "left": {"color": "#0072B2", "marker": "o"},

@@ -13,10 +13,10 @@ from odometry.arrays import FloatArray
 from odometry.icrs.measured import LEAST_WINDOWS, SHORT_WINDOWS, MeasuredIcrs, icrs_of_windows
 from odometry.icrs.points import NO_SLIP
 from odometry.identification.identification import Identification
+from odometry.recording.run import Robot, Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.report.drawing.figure import save_figure
 from odometry.report.icrs.icr_map import FITTED_STYLE, TURN_STYLES, Frame, frame_of, plot_icrs
-from odometry.run import Robot, Run
-from odometry.run_terrains import with_named_terrain
 from odometry.windows.travel.windows import windows_of
 
 _WIDTH_IN, _BESIDE_IN, _ABOVE_IN, _KEYS_IN, _COLUMNS = 4.6, 0.8, 1.15, 0.6, 3

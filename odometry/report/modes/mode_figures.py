@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from odometry.arrays import AnyArray
 from odometry.modes.follow.followed import MOTION, MOTION_AND_CAMERA, MOTION_AND_FEEL, Followed
 from odometry.modes.models.mode_set import NO_MODES
+from odometry.recording.run import UNKNOWN
 from odometry.report.drawing.figure import mode_colours, save_figure
 from odometry.report.drawing.html import Picture
 from odometry.report.modes.mode_panels import (
@@ -26,7 +27,6 @@ from odometry.report.modes.mode_panels import (
     drawn_rows,
     mark_mode_changes,
 )
-from odometry.run import UNKNOWN
 
 WIDTH_IN = 7.0
 STRIP_IN, LINES_IN, ROW_IN, STATE_IN, GAP_IN = 0.24, 1.45, 0.19, 1.25, 0.32

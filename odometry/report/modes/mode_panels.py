@@ -12,8 +12,8 @@ from odometry.arrays import AnyArray, FloatArray
 from odometry.evaluation.stretches import stretches
 from odometry.modes.follow.track import ModeTrack
 from odometry.modes.models.mode_set import NO_MODES, NONE_OF_THESE, UNDETERMINED
+from odometry.recording.run import UNKNOWN
 from odometry.report.drawing.figure import UNKNOWN_TINT, line_styles
-from odometry.run import UNKNOWN
 
 MOST_LINES = 6  # more modes are rows of grey
 MOST_DRAWN = 4000  # stamps

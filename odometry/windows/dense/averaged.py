@@ -11,8 +11,8 @@ import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray, IntArray
 from odometry.models.inputs import Inputs
-from odometry.run import Run
-from odometry.sensors import gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import gyroscope_of
 from odometry.windows.dense.dense import DenseWindows
 
 LONGEST_S = 0.1  # of a step

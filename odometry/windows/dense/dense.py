@@ -10,8 +10,8 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
 from odometry.models.inputs import Inputs
-from odometry.run import Run
-from odometry.run_terrains import row_terrains
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import row_terrains
 from odometry.windows.config import WindowConfig
 from odometry.windows.dense.dense_spans import EDGE_S, LEAST_POSES, windows_of_poses
 from odometry.windows.recorded.between import between

@@ -11,8 +11,8 @@ from statistics import median
 import numpy as np
 
 from odometry.arrays import AnyArray, FloatArray
-from odometry.frames import Frame
-from odometry.run import Run
+from odometry.recording.frames import Frame
+from odometry.recording.run import Run
 from odometry.windows.recorded.held_speeds import gyroscope_evidence, pose_evidence
 
 HOLD_PERIODS = 5.0  # usual periods up to which a step is a hold

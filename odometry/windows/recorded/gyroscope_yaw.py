@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from odometry.arrays import ComplexArray, FloatArray, IntArray
-from odometry.sensors import gyroscope_of
+from odometry.recording.sensors import gyroscope_of
 from odometry.windows.recorded.record import Record
 
 LARGEST_BIAS_RAD_S = 0.04

@@ -12,8 +12,8 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray, IntArray
 from odometry.dead_reckoning import dead_reckon
 from odometry.geometry import se2
-from odometry.run import Run
-from odometry.sensors import gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import gyroscope_of
 from odometry.windows.recorded.measured_poses import measured_poses, tread_travel
 from odometry.windows.recorded.robust import slope
 from odometry.windows.recorded.spans import touched

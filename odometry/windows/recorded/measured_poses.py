@@ -8,7 +8,7 @@ import numpy as np
 from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.interpolated import interpolated
 from odometry.windows.recorded.spans import touched
 

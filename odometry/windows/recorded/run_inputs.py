@@ -4,10 +4,10 @@ import numpy as np
 
 from odometry.arrays import FloatArray
 from odometry.models.inputs import Inputs
-from odometry.repeated_speeds import between_new_values
-from odometry.run import Run
-from odometry.run_terrains import row_terrains
-from odometry.table import fill_gaps, level_where_missing
+from odometry.recording.repeated_speeds import between_new_values
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import row_terrains
+from odometry.tables.table import fill_gaps, level_where_missing
 from odometry.windows.recorded.measured_poses import measured_poses, positions_at
 from odometry.windows.recorded.turns import continuous_yaw
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from odometry.arrays import BoolArray, FloatArray
 from odometry.geometry.angles import wrap
-from odometry.run import Run
-from odometry.sensors import Gyroscope, gyroscope_of
+from odometry.recording.run import Run
+from odometry.recording.sensors import Gyroscope, gyroscope_of
 from odometry.windows.recorded.gaps import odometry_gaps
 from odometry.windows.recorded.measured_poses import (
     FASTEST,

@@ -10,7 +10,7 @@ import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
-from odometry.run import Run, run_names
+from odometry.recording.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.gyroscope_yaw import yaw_rates_of
 from odometry.windows.recorded.record import (

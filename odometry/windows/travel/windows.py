@@ -11,7 +11,7 @@ from odometry.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from odometry.errors import WindowError
 from odometry.geometry import se2
 from odometry.models.inputs import Inputs, joined
-from odometry.run import Run, run_names
+from odometry.recording.run import Run, run_names
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.record import (
     STATIONARY,

@@ -9,7 +9,7 @@ from typing import Any, Self, TypeGuard
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.photographs.thumbnails import THUMBNAIL_PX, looks_like_one
 from terrain.errors import ImageError, PatchError
 

@@ -8,7 +8,7 @@ import tomli_w
 from odometry.arrays import FloatArray
 from odometry.io.files import atomic_write
 from odometry.outputs.provenance import Made
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.calibration.camera_table import camera_text
 from terrain.calibration.lens_sources import first_image
 from terrain.calibration.look_ahead import run_region

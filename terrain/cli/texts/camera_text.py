@@ -9,7 +9,7 @@ import numpy as np
 
 from odometry.checks.findings.finding import Level
 from odometry.geometry.angles import wrap
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from terrain.calibration.look_ahead import LookAhead, look_ahead, nearest_seen_m, suggest_pitch
 from terrain.calibration.mount_fit import NAMES
 from terrain.calibration.mount_sources import MountSource

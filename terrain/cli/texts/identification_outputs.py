@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from odometry.identification.identification import Identification, Identified
     from odometry.outputs.provenance import Made
     from odometry.parameters import ParameterSet
-    from odometry.run import Run
+    from odometry.recording.run import Run
 
 
 def require_icr_form(model: str) -> None:

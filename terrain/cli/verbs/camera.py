@@ -11,8 +11,8 @@ from terrain.cli.recordings import span_options
 from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
-    from odometry.run import Run
-    from odometry.run_span import Span
+    from odometry.recording.run import Run
+    from odometry.recording.run_span import Span
     from terrain.calibration.lens_sources import LensSource
     from terrain.calibration.mount_sources import MountSource
 

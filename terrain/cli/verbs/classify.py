@@ -121,7 +121,7 @@ def _row(
 
 
 def _table(classifier: "TerrainClassifier", rows: list[dict[str, Any]]) -> str:
-    from odometry.run import UNKNOWN
+    from odometry.recording.run import UNKNOWN
 
     width = max(len(row["image"]) for row in rows)
     names = max(len(name) for name in [*classifier.classes_, "unknown"])

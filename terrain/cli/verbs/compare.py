@@ -13,7 +13,7 @@ from terrain.cli.run_folders import RunFolder, RunsFirst, run_folders
 if TYPE_CHECKING:
     from odometry.comparison.result import Comparison
     from odometry.comparison.summary import Place
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
     from odometry.windows.config import WindowConfig
 
 

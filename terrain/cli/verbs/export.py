@@ -78,7 +78,7 @@ def export(
     """
     from odometry.export.ros_yaml import printable
     from odometry.export.source import read_export_source
-    from odometry.run import Robot
+    from odometry.recording.run import Robot
     from odometry.set_of_robot import set_notes
     from terrain.cli.outputs import claim_folder
     from terrain.cli.results import print_written

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from odometry.feel.labels.follow import Felt
     from odometry.feel.model import FeelModel
     from odometry.outputs.output_folder import OutputFolder
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 HEADER = ("run", "answer", "probability", "unknown", "windows")

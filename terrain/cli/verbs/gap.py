@@ -14,7 +14,7 @@ from terrain.cli.run_folders import RunFolder, RunsFirst
 
 if TYPE_CHECKING:
     from odometry.gap.answer.result import GapResult
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 FOLDER = RunFolder()
 

@@ -21,7 +21,7 @@ from terrain.cli.texts.identification_outputs import (
 
 if TYPE_CHECKING:
     from odometry.parameters import ParameterSet
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
     from odometry.windows.config import WindowConfig
 
 

@@ -13,7 +13,7 @@ from terrain.cli.run_folders import run_folders
 
 if TYPE_CHECKING:
     from odometry.feel.model import FeelModel
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 
 @click.command(name="identify-feel")

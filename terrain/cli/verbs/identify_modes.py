@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from odometry.modes.models.mode_pairs import Pair
     from odometry.modes.models.traction import TractionModes
     from odometry.modes.models.velocity import VelocityModes
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 ALIKE_S = 5.0  # pairs that take longer to be distinguished are named
 PAIRS = 4  # so many of them

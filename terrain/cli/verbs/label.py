@@ -11,7 +11,7 @@ from terrain.cli.recordings import span_options
 from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 SOURCES = ("truth.csv", "odometry.csv", "images.csv", "run.toml")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from odometry.modes.follow.track import ModesConfig
     from odometry.modes.models.mode_set import ModeSet
     from odometry.outputs.output_folder import OutputFolder
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FOLDER = RunFolder()

@@ -13,7 +13,7 @@ from odometry.fixes.degrees import FARTHEST_M
 from odometry.fixes.fixes import Fixes
 from odometry.fixes.local_metres import LocalMetres, Origin
 from odometry.fixes.origin import stated_origin
-from odometry.table import Table
+from odometry.tables.table import Table
 
 NO_YAW = "all of its rotations are the same: they are not measured, and yaw is left empty"
 

@@ -13,7 +13,7 @@ from terrain.cli.recordings import span_options
 from terrain.cli.run_folders import RunFolder
 
 if TYPE_CHECKING:
-    from odometry.run_span import Span
+    from odometry.recording.run_span import Span
     from terrain.run_options import RunOptions
 
 SOURCES = ("camera", "labels", "modes", "feel", "none")

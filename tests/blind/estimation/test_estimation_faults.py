@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.estimation.case import reference_of, travel_m
 from tests.blind.estimation.catalogue import FAULTS, make_case
 from tests.blind.faults.recordings import write_recording

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import with_poses_withheld, without_gyroscope
 from tests.studies.main_job.estimation_reckoning import (
     Path,

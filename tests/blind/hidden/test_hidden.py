@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.cases import make_case
 from tests.blind.effects import slope_sliding
 from tests.blind.ground import Ground

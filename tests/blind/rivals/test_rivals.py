@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.hidden.size import size_between
 from tests.blind.rivals.cases import (
     EVERY_PAIR,

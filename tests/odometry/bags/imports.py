@@ -7,7 +7,7 @@ from odometry.bags.import_bags import write_run
 from odometry.bags.plan import make_plan
 from odometry.bags.topics.survey import survey
 from odometry.bags.topics.topic_roles import TopicMap
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.bags.made_bags import RADIUS_M, TRACK_M
 
 SIZE = {"robot.wheel_radius": RADIUS_M, "robot.track_width": TRACK_M}

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from tests.odometry.checks.faulty import put, without_yaw
 
 PERIOD_S = 0.05

@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.findings.consequences import CONSEQUENCES
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import drive, turning_all_round, winding
 from tests.odometry.checks.faulty import gyroscope, pose_stamps, positions, treads, yaw

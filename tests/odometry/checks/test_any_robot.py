@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.poses.course_offsets import course_apart
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.any_robot import write_clean_run
 
 # What is true of them, and no fault.

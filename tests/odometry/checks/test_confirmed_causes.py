@@ -19,7 +19,7 @@ from odometry.checks.findings.undo import (
     treads_times,
 )
 from odometry.checks.recording import check_recording
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import drive, turning_all_round, winding
 from tests.odometry.checks.faulty import FAULTS, pose_stamps, positions, put, treads, yaw

@@ -9,7 +9,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.late_stamps import followed
 from odometry.checks.turns.constancy import uneven_map
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from tests.odometry.checks.answers import UNKNOWN, warnings
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, yaw
 

@@ -10,7 +10,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.interleaved import interleaved
 from odometry.checks.treads.tread_samples import tread_samples
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import drive, turning_all_round, uneven
 from tests.odometry.checks.faulty import put, treads, without_gyroscope, without_yaw

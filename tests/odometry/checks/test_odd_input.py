@@ -14,8 +14,8 @@ from odometry.checks.findings.consequences import CONSEQUENCES
 from odometry.checks.findings.finding import Level
 from odometry.checks.poses.steps import step_sizes
 from odometry.checks.recording import check_recording
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 WIDTH_M = 0.9
 

@@ -8,8 +8,8 @@ import pytest
 from odometry.checks.findings.catalogue import CATALOGUE
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from tests.odometry.checks.faulty import FAULTS, gyroscope, put, treads
 
 RECORDING = "warthog_grass_20240729_1404"

@@ -10,7 +10,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 
 SYMMETRIC = {"y_left": 0.4, "y_right": -0.4, "x_icr": 0.0, "alpha_left": 1.0, "alpha_right": 1.0}
 SKEWED = {"y_left": 0.5, "y_right": -0.3, "x_icr": 0.1, "alpha_left": 0.95, "alpha_right": 0.9}

@@ -13,7 +13,7 @@ from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 
 

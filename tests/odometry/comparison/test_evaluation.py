@@ -15,8 +15,8 @@ from odometry.errors import WindowError
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
 from odometry.models.catalogue import MODELS
-from odometry.run import Run
-from odometry.run_terrains import with_named_terrain
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.run_inputs import inputs_of
 from odometry.windows.window_errors import window_errors

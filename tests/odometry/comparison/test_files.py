@@ -12,7 +12,7 @@ from odometry.comparison.file_names import check_file_names, file_name
 from odometry.comparison.files import comparison_table, write_comparison
 from odometry.errors import ComparisonError
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 
 
 @pytest.fixture(scope="module")

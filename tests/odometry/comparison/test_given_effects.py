@@ -8,7 +8,7 @@ import pytest
 
 from odometry.comparison.compare import compare
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 
 ARM = (0.4, -0.25)
 

@@ -9,7 +9,7 @@ from odometry.comparison.compare import candidates_named, compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.errors import ComparisonError, ConfigError, IdentificationError, ParameterError
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 
 
 def test_a_model_that_fails_is_a_row_with_its_reason(grass, quick, bench, tmp_path):

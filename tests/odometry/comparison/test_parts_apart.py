@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.comparison.compare import compare
-from odometry.run import Run
+from odometry.recording.run import Run
 
 ICE = {"y_left": 0.75, "y_right": -0.7, "x_icr": 0.05, "alpha_left": 0.8, "alpha_right": 0.85}
 

@@ -19,9 +19,9 @@ from odometry.comparison.split import (
     windows_of_parts,
 )
 from odometry.errors import RunFolderError, WindowError
-from odometry.run import Robot, Run
-from odometry.run_terrains import with_named_terrain
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.recording.run_terrains import with_named_terrain
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 
 ROWS = "t,v_left,v_right,terrain\n0,1,1,\n1,1,1,ice\n2,3,3,ice\n3,0,0,unknown\n4,1,1,ice\n"

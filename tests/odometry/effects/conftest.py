@@ -8,7 +8,7 @@ import pytest
 from odometry.effects.interface.base_model import Base
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 ROBOT = Robot(0.6, length=0.8)
 VALUES = np.array([0.45, -0.38, 0.07, 0.95, 0.9])

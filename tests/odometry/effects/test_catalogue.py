@@ -31,7 +31,7 @@ from odometry.parameters import (
     read_parameters,
     write_parameters,
 )
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from tests.odometry.effects.reports import reported
 
 ICRS = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1}

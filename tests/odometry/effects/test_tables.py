@@ -6,7 +6,7 @@ from odometry.effects.tables import effects_of, model_of, table_of
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.parameters import TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 ICRS = {"y_left": 0.4, "y_right": -0.5, "x_icr": 0.1, "alpha_left": 1.0, "alpha_right": 0.9}
 SCALE = {"name": "wheel_scale", "form": "factors", "parameters": {"c_l": 1.1, "c_r": 0.9}}

@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.recording.frames import Frame
 
 WIDTH = 0.5
 NAMES = ("y_left", "y_right", "x_icr")

@@ -7,7 +7,7 @@ import numpy as np
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 WIDTH = 0.6
 ICRS = (0.52, -0.46, -0.08)

@@ -14,8 +14,8 @@ from scipy.stats import chi2
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.noise_scale import tread_variance
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
+from odometry.recording.frames import Frame
 
 WIDTH, STEP_S, STEPS, RUNS = 0.6, 0.1, 200, 40
 VALUES = {"y_left": 0.5, "y_right": -0.45, "x_icr": -0.05, "alpha_left": 0.9, "alpha_right": 0.92}

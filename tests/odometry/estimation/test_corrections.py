@@ -13,11 +13,11 @@ from odometry.errors import ParameterError
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.corrections import corrections_of
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.learned_parameters import learned_parameters
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.learned_parameters import learned_parameters
+from odometry.replays.pipeline import ConstantTerrain, replay
 from odometry.windows.recorded.run_inputs import inputs_of
 
 ICRS = {"y_left": 0.4, "y_right": -0.3, "x_icr": 0.05, "alpha_left": 0.9, "alpha_right": 0.8}

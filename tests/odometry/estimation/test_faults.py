@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from odometry.estimates import Replay
 from odometry.geometry.angles import wrap
+from odometry.replays.estimates import Replay
 from tests.odometry.estimation.sensor_drives import (
     ICRS,
     STEP_S,

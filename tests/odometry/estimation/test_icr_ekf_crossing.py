@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from odometry.estimates import Replay
-from odometry.learned_parameters import learned_parameters
-from odometry.run_terrains import Footing
-from odometry.terrain_sources import ReplayedFooting
+from odometry.recording.run_terrains import Footing
+from odometry.replays.estimates import Replay
+from odometry.replays.learned_parameters import learned_parameters
+from odometry.replays.terrain_sources import ReplayedFooting
 from tests.odometry.estimation.icr_ekf_drives import driven, filter_of, frame, table
 
 A, B = np.array([0.4, -0.4, 0.0, 1.0, 1.0]), np.array([0.3, -0.35, 0.1, 0.9, 1.0])

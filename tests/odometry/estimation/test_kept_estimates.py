@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import odometry
-from odometry.estimates import Replay
 from odometry.estimation import kept_estimates
 from odometry.estimation.filter_event import FilterEvent
 from odometry.estimation.kept_estimates import KeptEstimates
+from odometry.replays.estimates import Replay
 
 CARRIED = {"watch": None, "recent": (), "refused": ()}  # kept of the last alone
 

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf, MeansKept
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 
 WIDTH, SIGMA_WIDTHS = 0.5, 0.2
 CONFIG = IcrEkfConfig(**PAPER, reset_sigma_widths=SIGMA_WIDTHS)

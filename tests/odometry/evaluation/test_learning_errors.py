@@ -10,8 +10,8 @@ from odometry.estimation.transition import STATES, Y_LEFT
 from odometry.evaluation.learning_covariances import learning_covariances, parameter_covariances
 from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.pipeline import ConstantTerrain, replay
 
 STEP = 1e-6
 CHANGED = 40  # of 101 estimates: fewer than half, so that the median variance is 0

@@ -5,8 +5,8 @@ import pytest
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import accepted_poses, odometer_uncertainty
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.pipeline import ConstantTerrain, replay
 from odometry.trajectory import Trajectory
 
 

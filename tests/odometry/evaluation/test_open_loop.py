@@ -4,7 +4,7 @@ import pytest
 from odometry.dead_reckoning import dead_reckon, dead_reckon_in_space
 from odometry.errors import RunFolderError, TrajectoryError
 from odometry.evaluation.open_loop import fitness, measured_poses, open_loop
-from odometry.run import Run
+from odometry.recording.run import Run
 
 TWISTS = np.array([[1.0, 0, 0.5], [0.5, 0.1, -0.5], [2.0, 0, 1.0], [9, 9, 9]])
 ODOMETRY = "t,v_left,v_right\n0,1,1\n1,1,1\n2,1,1\n4,1,1\n"

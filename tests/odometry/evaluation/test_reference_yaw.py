@@ -8,8 +8,8 @@ import pytest
 from odometry.evaluation.reference_yaw import counted_reference_yaw
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import window_errors
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.trajectory import Trajectory
 
 RAD_S, STEP_S, POSE_S = 2.3, 0.5, 0.1

@@ -3,7 +3,7 @@ import pytest
 
 from odometry.evaluation.relative import EvaluationConfig
 from odometry.evaluation.score import reference_of, score
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 
 CONFIG = EvaluationConfig(horizon_m=5.0, stride_m=1.0)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import JUDGED_EVERY_S, SILENT_S, choose, withhold
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.pipeline import ConstantTerrain, replay
 
 
 def run_with(make_run, stamps_s, yaw="0", end_s=12.0):

@@ -12,7 +12,7 @@ from odometry.export.ros_yaml import ros_yaml
 from odometry.export.source import read_export_source
 from odometry.models.catalogue import MODELS
 from odometry.parameters import ParameterSet, TerrainParameters, write_parameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from tests.odometry.export.result_folder import TABLE, YAW_RATE_RAD_S, write_results
 
 ruamel = pytest.importorskip("ruamel.yaml")

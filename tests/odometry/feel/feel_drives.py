@@ -7,8 +7,8 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 
 from odometry.feel.identify_feel import identify_feel
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 # centre [Hz], m/s2 at 1 m/s, exponent of speed, share of rotation, yaw gain, current [A]
 TERRAINS = {

@@ -8,7 +8,7 @@ from odometry.feel.identify_feel import identify_feel
 from odometry.feel.labels.felt import NOT_MEASURED, STATIONARY
 from odometry.feel.labels.files import is_unlike, sentences
 from odometry.feel.labels.follow import follow_feel
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from tests.odometry.feel.feel_drives import drive, drives, with_imu
 
 NAMES = ["tiles", "gravel", "snow"]

@@ -16,8 +16,8 @@ from odometry.feel.model_file import (
 )
 from odometry.installed import shipped_data
 from odometry.io.csv_table import read_csv_table
+from odometry.recording.run import Run
 from odometry.report.feel_page import write_feel_report
-from odometry.run import Run
 from tests.odometry.feel.feel_drives import drive
 
 # of the shipped run since 0.29; on the one before it what 0.10 itself had given held to 1e-6

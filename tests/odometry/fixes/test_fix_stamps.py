@@ -8,7 +8,7 @@ import pytest
 
 from odometry.errors import TrajectoryError
 from odometry.fixes.fixes import read_fixes
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.fixes.made_fixes import (
     BEGIN_S,
     ROWS,

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.icrs.measured import HALF_TURN_RAD, icr_medians, measured_icrs
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from tests.odometry.window_drives import ICRS, commands, icr_twist, write
 

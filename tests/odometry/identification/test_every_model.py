@@ -7,7 +7,7 @@ from odometry.identification.fitters import fitter
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 

@@ -6,7 +6,7 @@ from odometry.identification.fitted import Undetermined, undetermined
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 

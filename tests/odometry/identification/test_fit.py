@@ -7,7 +7,7 @@ from odometry.identification.fit import fit
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.motion import window_motion
 from odometry.windows.travel.windows import windows_of

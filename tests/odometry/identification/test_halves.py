@@ -9,7 +9,7 @@ from odometry.identification.fit_pair import BY_CHANCE
 from odometry.identification.halves import Halves
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 
 

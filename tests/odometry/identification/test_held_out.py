@@ -8,7 +8,7 @@ from odometry.identification.fit import fit
 from odometry.identification.halves import by_halves, by_runs, held_out_errors
 from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 from odometry.windows.window_errors import window_errors

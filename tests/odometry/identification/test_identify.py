@@ -11,7 +11,7 @@ from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.parameters import read_parameters, write_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 from odometry.windows.window_errors import window_errors

@@ -10,7 +10,7 @@ from odometry.identification.fitted import Undetermined
 from odometry.identification.identify import identify
 from odometry.identification.plausibility import notes, refusals
 from odometry.identification.start import SolverConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 
 CONFIG = WindowConfig(horizon_m=1.0)

@@ -10,7 +10,7 @@ from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig, start_of
 from odometry.models.icr import Icr
 from odometry.models.radius_of_curvature import RadiusOfCurvature
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances, window_covariances
 from odometry.windows.travel.windows import windows_of

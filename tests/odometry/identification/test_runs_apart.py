@@ -7,7 +7,7 @@ import pytest
 
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 
 CONFIG = WindowConfig(position_sigma_m=0.01, yaw_sigma_rad=0.005)

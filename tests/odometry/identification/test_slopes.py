@@ -16,7 +16,7 @@ from odometry.identification.slopes import fit_in_two_stages, mean_tilt_rad
 from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig
 from odometry.models.icr_slope import IcrSlope
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances
 from odometry.windows.travel.windows import windows_of

@@ -11,7 +11,7 @@ from odometry.identification.problem import PROBLEMS, Problem
 from odometry.identification.solve import solve
 from odometry.identification.start import SolverConfig
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances
 from odometry.windows.travel.windows import windows_of

@@ -18,7 +18,7 @@ from odometry.parameters import (
     read_parameters,
     write_parameters,
 )
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.windows.config import WindowConfig
 
 ONE_START = SolverConfig(starts=1)

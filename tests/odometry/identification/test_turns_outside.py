@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from odometry.identification.plausibility import turns_outside
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
 from odometry.identification.two_kinds import LEAST_WINDOWS, two_kinds
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 
 CONFIG = WindowConfig(position_sigma_m=0.01, yaw_sigma_rad=0.005)

@@ -17,7 +17,7 @@ from odometry.identification.solve import Solution
 from odometry.identification.start import SolverConfig
 from odometry.identification.uncertainty import parameter_uncertainty, residual_scale
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.noise import pose_variances, window_covariances
 from odometry.windows.travel.windows import windows_of

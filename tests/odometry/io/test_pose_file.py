@@ -12,7 +12,7 @@ from odometry.geometry.se3 import OPTICAL_FROM_CAMERA
 from odometry.io.csv_table import read_csv_table, write_csv_table
 from odometry.io.trajectory_files import to_optical
 from odometry.io.trajectory_poses import doubt_of_axes, pose_columns, poses_within
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.trajectory import SpatialTrajectory
 
 

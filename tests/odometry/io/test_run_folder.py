@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from odometry.errors import RunFolderError
 from odometry.io.run_folder import write_run_folder
-from odometry.run import Run
+from odometry.recording.run import Run
 
 BAD_TABLES = [
     ("odometry", "t,v_left\n0,1\n", ["odometry.csv", "v_right"]),

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 from odometry.errors import ParameterError
 from odometry.models.contact import Contact
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 MODEL = Contact()
 NAMES = [parameter.name for parameter in MODEL.parameters]

@@ -11,7 +11,7 @@ from odometry.models.contact_balance import balance_at
 from odometry.models.contact_solve import NEAR, descend
 from odometry.models.contact_stance import stance_of
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 MODEL = Contact()
 ORDINARY = MODEL.pack(MODEL.guess(Robot(0.5)))

@@ -6,7 +6,7 @@ import pytest
 from odometry.errors import ParameterError
 from odometry.models.icr import Icr, IcrByTerrain
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 MODEL = IcrByTerrain(("sand", "ice"))
 ON_SAND = np.array([0.45, -0.38, 0.07, 0.95, 0.9])

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from odometry.models.icr import Icr
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 MODEL = IcrSlope()
 LAZARO = {

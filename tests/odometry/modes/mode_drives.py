@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 ROBOT = Robot(track_width=0.5, length=0.8)
 PIECES = 4  # of a step, in which equations are integrated

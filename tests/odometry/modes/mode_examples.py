@@ -9,8 +9,8 @@ from odometry.modes.models.mode_set import ModeSet
 from odometry.modes.models.mode_set_file import MODE
 from odometry.modes.models.traction import TractionModes
 from odometry.modes.models.velocity import VelocityModes
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 STEP_S = 0.5
 

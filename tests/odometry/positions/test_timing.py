@@ -11,7 +11,7 @@ from odometry.comparison.config import ComparisonConfig
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
 from odometry.positions.timing import OF_MEANING, PERIODS, TRIED_S, Timing, timings_of
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded import gyroscope_yaw
 from odometry.windows.recorded.gyroscope_yaw import COARSE, FINE
 from tests.odometry.positions_drives import drive, emptied, table

@@ -8,8 +8,8 @@ import pytest
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.pose_delay import without_pose_delay
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from tests.odometry.checks.drives import PERIOD_S, driven, starts_and_stops
 from tests.odometry.checks.faulty import late, put, treads, without_gyroscope
 from tests.odometry.estimation.sensor_drives import WIDTH, drive

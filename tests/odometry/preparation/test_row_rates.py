@@ -7,7 +7,7 @@ import pytest
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.row_rates import with_row_rates
-from odometry.sensors import gyroscope_of
+from odometry.recording.sensors import gyroscope_of
 from tests.odometry.checks.drives import PERIOD_S, drive
 from tests.odometry.checks.faulty import put, without_yaw
 

@@ -7,6 +7,7 @@ import pytest
 
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import CheckReport, Finding, Level
+from odometry.recording.run import Robot, Run
 from odometry.report.check_plots import (
     effective_width_m,
     marks_of,
@@ -14,8 +15,7 @@ from odometry.report.check_plots import (
     plot_tread_speeds,
     plot_yaw_rates,
 )
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.tables.table import Table
 
 WIDTH_M = 0.9  # effective, of a track of 0.5 m
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import SimulationError
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane, Zones
 from odometry.simulation.contact.vehicle import read_contact_vehicle

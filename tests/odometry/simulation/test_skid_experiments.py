@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.vehicle import read_contact_vehicle

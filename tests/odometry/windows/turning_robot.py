@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 STEP_S = 0.01
 WIDTH_M = 0.5  # stated; the effective width is 0.6 to 2 times as large

@@ -22,8 +22,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.calibration.chessboard import Chessboard, find_boards, photo_files
 from terrain.calibration.lens_from_boards import lens_from_boards
 from terrain.calibration.mount_from_points import MarkedPoints, mount_from_points

@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.classification.photographs.patches import find_photos
 from terrain.classification.training import train
 from terrain.labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain

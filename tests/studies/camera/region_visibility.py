@@ -25,7 +25,7 @@ import numpy as np
 import yaml
 
 from odometry.geometry import se2
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.simulation.commands import WeavingDriver
 from terrain.camera.camera import Camera
 from terrain.checks.drawn_images import motion_at

@@ -24,7 +24,7 @@ import cv2
 import numpy as np
 
 from odometry.arrays import AnyArray, ByteImage
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.neighbours.calibration import reliability, reliability_by_chance

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage, IntArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.likeness import FEWEST_IMAGES

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import AnyArray, BoolArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.neighbours.validation import grouped_folds
 from terrain.classification.photographs.patches import find_photos, load_patches

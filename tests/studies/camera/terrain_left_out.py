@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.arrays import ByteImage
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.held_out import balanced_accuracy, balanced_accuracy_interval

@@ -23,7 +23,7 @@ import numpy as np
 from skimage import data as pictures
 
 from odometry.arrays import AnyArray, ByteImage, FloatArray, IntArray
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import Classification
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.features.features import feature_matrix

@@ -24,7 +24,7 @@ from odometry.feel.classifier.strangeness import unknown_probability
 from odometry.feel.classifier.table import FeelTable, stratified_folds
 from odometry.feel.labels.felt import FeelConfig
 from odometry.feel.recorded.windows import feel_windows
-from odometry.run import Run
+from odometry.recording.run import Run
 
 SLOW_M_S = 0.3  # mean speed of a run: slower ones train, faster ones are evaluated, and back
 SURE = 0.9

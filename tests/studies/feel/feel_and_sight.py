@@ -20,9 +20,9 @@ from scipy.signal import butter, sosfilt
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.labels.follow import follow_feel
-from odometry.pipeline import replay
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.replays.pipeline import replay
+from odometry.tables.table import Table
 from terrain.config import Config
 from terrain.image_labels.image_label import ImageLabel
 from terrain.switch.feel_labels import FeelLabels

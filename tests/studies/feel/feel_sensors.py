@@ -24,8 +24,8 @@ from odometry.feel.labels.follow import Felt, check_repeats
 from odometry.feel.model import FeelModel
 from odometry.feel.recorded.signals import AXES
 from odometry.feel.recorded.windows import FeelWindows, feel_windows
-from odometry.run import UNKNOWN, Run
-from odometry.table import Table
+from odometry.recording.run import UNKNOWN, Run
+from odometry.tables.table import Table
 from tests.studies.feel.feel_alterations import ALTERED, Change
 
 WINDOW_S = 2.0

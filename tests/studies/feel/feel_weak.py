@@ -25,9 +25,9 @@ from odometry.feel.identify_feel import identify_feel
 from odometry.feel.labels.felt import FeelConfig
 from odometry.feel.labels.follow import Felt
 from odometry.feel.recorded.windows import feel_windows
-from odometry.run import UNKNOWN, Run
-from odometry.run_span import Span, cut_run
-from odometry.table import Table
+from odometry.recording.run import UNKNOWN, Run
+from odometry.recording.run_span import Span, cut_run
+from odometry.tables.table import Table
 from terrain.labelling.felt_terrain import LONG_S, STRETCH_S, SURE, sure_labels
 from tests.studies.feel.feel_sensors import fitted
 

@@ -22,7 +22,7 @@ from joblib import Parallel, delayed
 from odometry.errors import OdometryError
 from odometry.gap.gap import find_gap
 from odometry.gap.show.files import write_gap
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.cases import KINDS, NAMES, Case, make_case
 from tests.studies.gap.gap_names import all_named, course_of, score
 from tests.studies.gap.gap_table import mistakes_of, table_of

@@ -27,7 +27,7 @@ from joblib import Parallel, delayed
 from odometry.errors import OdometryError
 from odometry.gap.gap import find_gap
 from odometry.gap.show.files import write_gap
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.rivals.cases import EVERY_PAIR, RivalCase, make_rivals
 from tests.blind.rivals.drives import Proposal
 from tests.studies.gap.gap_cases import read

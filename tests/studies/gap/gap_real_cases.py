@@ -7,7 +7,7 @@ from pathlib import Path
 
 from odometry.comparison.split import halves, parts_by_terrain
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 
 LATE_S = 0.15
 TILE = "husky_tile_20231212_1616_s00"

@@ -12,7 +12,7 @@ from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.gap.answer.result import GapResult
 from odometry.gap.prepare.simulate import residuals
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.gap.gap_real_cases import LATE_S, Case, in_halves, late
 
 ARM_M = 0.3

@@ -28,7 +28,7 @@ from odometry.errors import OdometryError
 from odometry.gap.prepare.prepared import prepared
 from odometry.gap.prepare.statistic import floor_there
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.gap.gap_real import CONFIG
 from tests.studies.gap.gap_real_cases import Case, late, recordings, renamed
 from tests.studies.gap.gap_real_changes import lagging, turned

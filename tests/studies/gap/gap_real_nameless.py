@@ -19,7 +19,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from odometry.arrays import FloatArray
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.gap.gap_real_cases import Case, in_halves, recordings
 from tests.studies.gap.gap_real_strong import count
 

@@ -28,7 +28,7 @@ from odometry.gap.prepare.prepared import prepared
 from odometry.gap.prepare.simulate import residuals
 from odometry.gap.prepare.statistic import floor_there
 from odometry.models.icr import Icr
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.dense.dense import DenseWindows
 from tests.studies.gap.gap_real import COLUMNS, CONFIG, study
 from tests.studies.gap.gap_real_cases import Case, in_halves, late, recordings

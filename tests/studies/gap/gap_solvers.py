@@ -22,7 +22,7 @@ import scipy.optimize
 from odometry.gap.fit import hypothesis as gap_fit
 from odometry.gap.gap import find_gap
 from odometry.gap.solve import Found, differences, least_squares
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.cases import make_case
 
 KINDS = ("wheel_scale+time_offset", "actuator_lag", "top_speed", "curvature", "lever_arm")

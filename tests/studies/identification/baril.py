@@ -25,8 +25,8 @@ from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
+from odometry.recording.run import Run
 from odometry.report.comparison.comparison_page import write_comparison_report
-from odometry.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 from tests.studies.identification.real_models import recordings

@@ -16,7 +16,7 @@ from odometry.comparison.compare import DEFAULT_MODELS, compare
 from odometry.comparison.statistics import between
 from odometry.errors import OdometryError
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.any_robot import write_clean_run
 from tests.studies.identification.identify_any_robot import parser_of, share
 

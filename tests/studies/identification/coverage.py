@@ -24,8 +24,8 @@ from odometry.identification.fitters import fitter
 from odometry.identification.plausibility import refusals
 from odometry.identification.start import SolverConfig
 from odometry.models.catalogue import MODELS
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 

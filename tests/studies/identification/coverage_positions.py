@@ -22,7 +22,7 @@ from odometry.identification.plausibility import refusals
 from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import stretches_for
 from odometry.models.catalogue import MODELS
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from tests.studies.identification.coverage import TRUTHS, Cell, drive
 

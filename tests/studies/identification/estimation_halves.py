@@ -15,7 +15,7 @@ import numpy as np
 from odometry.errors import OdometryError
 from odometry.identification.identify import identify
 from odometry.identification.start import SolverConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import with_columns
 from tests.studies.main_job.estimation_recordings import SEVEN, motion, recordings
 

@@ -19,7 +19,7 @@ import numpy as np
 from odometry.errors import OdometryError
 from odometry.identification.identify import identify
 from odometry.identification.plausibility import notes, turns_outside
-from odometry.run_span import Span
+from odometry.recording.run_span import Span
 from terrain.checks.recording import checked_run
 from tests.blind.any_robot import write_clean_run
 from tests.studies.recordings.check_scoring import interval

@@ -25,8 +25,8 @@ from odometry.identification.start import SolverConfig
 from odometry.identification.stretch_fit import windows_or_stretches
 from odometry.models.base import KinematicModel
 from odometry.models.catalogue import MODELS
-from odometry.run import Run
-from odometry.run_terrains import with_named_terrain
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import with_named_terrain
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.record import position_record_of
 from odometry.windows.stretches.stretch_motion import rotations

@@ -16,7 +16,7 @@ import numpy as np
 from odometry.errors import OdometryError
 from odometry.geometry.angles import wrap
 from odometry.positions.heading import found_heading
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.measured_poses import YAW_FOUND
 from tests.studies.identification.positions import MOTION, emptied, without_gyroscope
 

@@ -42,8 +42,8 @@ from odometry.errors import OdometryError
 from odometry.identification.start import SolverConfig
 from odometry.io.files import atomic_write
 from odometry.models.catalogue import MODELS
+from odometry.recording.run import Run
 from odometry.report.comparison.comparison_page import write_comparison_report
-from odometry.run import Run
 from odometry.windows.window_errors import window_errors
 
 BASELINE = "icr"

@@ -26,7 +26,7 @@ from odometry.io.run_folder import write_run_folder
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel.windows import windows_of
 

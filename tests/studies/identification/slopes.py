@@ -26,7 +26,7 @@ from odometry.models.catalogue import MODELS
 from odometry.models.icr_slope import IcrSlope
 from odometry.models.inputs import Inputs
 from odometry.parameters import read_parameters
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.drive import simulate_contact
 from odometry.simulation.contact.slope import Plane
 from odometry.simulation.contact.vehicle import read_contact_vehicle

@@ -19,7 +19,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 from terrain.classification.training import train
 from terrain.main_job import run_odometry
 from terrain.synthesis.config import SynthesisConfig

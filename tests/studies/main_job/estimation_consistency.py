@@ -24,10 +24,10 @@ from tqdm import tqdm
 
 from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.frames import Frame
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from tests.studies.main_job.estimation_outputs import outputs_of
 from tests.studies.main_job.estimation_reckoning import Path, at, reference_path, wheel_travel_m
 from tests.studies.main_job.estimation_recordings import motion, recordings

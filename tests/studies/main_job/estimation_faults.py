@@ -25,7 +25,7 @@ import numpy as np
 from tqdm import tqdm
 
 from odometry.errors import OdometryError
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.estimation.case import SHARE, acts, reference_of, travel_m
 from tests.blind.estimation.catalogue import FAULTS, make_case
 from tests.blind.faults.recordings import write_recording

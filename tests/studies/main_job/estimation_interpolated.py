@@ -16,7 +16,7 @@ import numpy as np
 from odometry.estimation.config import IcrEkfConfig
 from odometry.geometry.angles import wrap
 from odometry.preparation.pose_noise import with_pose_noise
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_noise import RECORDINGS, errors, replayed
 from tests.studies.main_job.estimation_recordings import motion
 

@@ -14,7 +14,7 @@ from pathlib import Path as Folder
 
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import outputs_of, with_columns, with_rows
 from tests.studies.main_job.estimation_reckoning import (
     ideal_drive,

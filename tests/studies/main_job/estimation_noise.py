@@ -16,9 +16,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.geometry import se2
-from odometry.pipeline import ConstantTerrain, replay
 from odometry.preparation.pose_noise import with_pose_noise
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.pipeline import ConstantTerrain, replay
 from tests.studies.main_job.estimation_recordings import motion
 
 RECORDINGS = (

@@ -7,7 +7,7 @@ from pathlib import Path as Folder
 
 import numpy as np
 
-from odometry.table import Table
+from odometry.tables.table import Table
 from terrain.main_job import run_odometry
 from terrain.results import write_results
 from tests.studies.main_job.estimation_reckoning import Path

@@ -22,7 +22,7 @@ import numpy as np
 
 from odometry.errors import OdometryError
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import outputs_of, with_columns, with_poses_withheld
 from tests.studies.main_job.estimation_reckoning import (
     Path,

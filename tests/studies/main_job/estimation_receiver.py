@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.table import Table
+from odometry.tables.table import Table
 from terrain.main_job import run_odometry
 from tests.studies.main_job.estimation_steps import clean_drive, farthest_and_width
 

@@ -17,7 +17,7 @@ from pathlib import Path as Folder
 
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import (
     outputs_of,
     with_poses_withheld,

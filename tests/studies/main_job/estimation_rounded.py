@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from odometry.geometry.angles import wrap
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.main_job import run_odometry
 from tests.studies.main_job.estimation_recordings import motion
 

@@ -10,9 +10,9 @@ from pathlib import Path as Folder
 
 import numpy as np
 
-from odometry.frames import Frame
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.frames import Frame
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 TRACK_WIDTH_M = 0.6
 STEP_S = 0.05

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.main_job import run_odometry
 from tests.blind.any_robot import write_clean_run
 

@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from tests.studies.main_job.estimation_outputs import outputs_of, with_columns
 from tests.studies.main_job.estimation_recordings import SEVEN
 

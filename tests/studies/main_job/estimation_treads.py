@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.studies.main_job.estimation_outputs import outputs_of, with_columns
 from tests.studies.main_job.estimation_recordings import SEVEN, motion, recordings
 from tests.studies.main_job.estimation_stuck import TREADS, moving_s

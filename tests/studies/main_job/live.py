@@ -17,7 +17,7 @@ import numpy as np
 
 import terrain
 from odometry.estimation.config import IcrEkfConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.config import Config
 from tests.studies.main_job.estimation_recordings import motion, recordings
 

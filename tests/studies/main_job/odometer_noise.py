@@ -14,7 +14,7 @@ import numpy as np
 from odometry.evaluation.odometer_uncertainty import odometer_uncertainty
 from odometry.evaluation.open_loop_consistency import DISTANCES_M
 from odometry.evaluation.open_loop_errors import SOURCES
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.main_job import run_odometry
 from tests.studies.main_job.estimation_recordings import SEVEN, motion, recordings
 

@@ -19,8 +19,8 @@ from odometry.evaluation.odometer_uncertainty import path_of
 from odometry.geometry import se2
 from odometry.geometry.angles import wrap
 from odometry.identification.identify import identify
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from terrain.main_job import run_odometry
 from tests.studies.main_job.estimation_outputs import without_gyroscope
 from tests.studies.main_job.estimation_recordings import motion, recordings

@@ -17,8 +17,8 @@ from types import SimpleNamespace
 from odometry.errors import OdometryError
 from odometry.identification.identify import identify
 from odometry.parameters import ParameterSet
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from terrain.result.sets_against_gyroscope import sets_against_gyroscope
 from terrain.result.sets_against_poses import sets_against_poses
 

@@ -22,7 +22,7 @@ from tqdm import tqdm
 
 from odometry.arrays import FloatArray
 from odometry.evaluation.score import score
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.classification.training import train
 from terrain.config import Config
 from terrain.main_job import RunResult, run_odometry

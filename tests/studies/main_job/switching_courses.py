@@ -14,8 +14,8 @@ import numpy as np
 
 from odometry.io.run_folder import write_run_folder
 from odometry.parameters import ParameterSet
-from odometry.run import Run
-from odometry.run_terrains import Footing
+from odometry.recording.run import Run
+from odometry.recording.run_terrains import Footing
 from odometry.simulation.commands import WeavingDriver
 from odometry.simulation.drive import Drive, simulate
 from odometry.simulation.ground import GroundMap, footprint_points, to_world

@@ -21,8 +21,8 @@ from tqdm import tqdm
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.evaluation.score import reference_of, score
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.terrain_sources import labelled_terrain
+from odometry.replays.pipeline import ConstantTerrain, replay
+from odometry.replays.terrain_sources import labelled_terrain
 from terrain.config import Config
 from tests.studies.main_job.switching_courses import LabellingWatcher, TrueFooting, make_course
 

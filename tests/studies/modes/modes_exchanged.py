@@ -12,7 +12,7 @@ from itertools import combinations
 from pathlib import Path
 
 from odometry.modes.identify.drive_turns import drive_turns, turn_notes
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.modes.worlds import calibration_runs, worlds
 
 DRIVES = 2

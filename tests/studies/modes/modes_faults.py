@@ -27,7 +27,7 @@ from odometry.modes.follow.track import ModesConfig, follow_modes
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.models.mode_set import DWELL_S, NONE_OF_THESE, UNDETERMINED, ModeSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.blind.modes.faults import NAMED, OWN, make_case, possible
 from tests.blind.modes.more_faults import MORE
 from tests.blind.modes.worlds import World, calibration_runs, worlds

@@ -26,7 +26,7 @@ from odometry.modes.follow.track import follow_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.models.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.modes_config import ModesConfig
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.feel.feel_drives import drive
 
 WAYS = ("motion alone", "feel alone", "both")

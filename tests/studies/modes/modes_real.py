@@ -27,8 +27,8 @@ from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.models.mode_set import DWELL_S, NO_MODES, ModeSet
 from odometry.modes.models.velocity import VelocityModes
 from odometry.modes.recorded.bank_inputs import Signals
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 
 BETWEEN_S = 1.0  # of two runs joined
 SURE = ModesConfig().sure

@@ -34,7 +34,7 @@ from odometry.modes.follow.track import ModesConfig, ModeTrack, follow_modes
 from odometry.modes.identify.identify_traction import identify_traction_modes
 from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.models.mode_set import DWELL_S, NO_MODES, UNDETERMINED, ModeSet
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.contact.drive import ContactDrive, simulate_contact
 from odometry.simulation.contact.traction import Traction
 from odometry.simulation.contact.vehicle import ContactVehicle, read_contact_vehicle

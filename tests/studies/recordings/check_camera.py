@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from odometry.checks.findings.finding import Level
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from terrain.camera.camera import Camera
 from terrain.camera.camera_values import homography_of_mount
 from terrain.checks.drawn_images import straight_ahead

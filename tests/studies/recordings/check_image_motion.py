@@ -19,7 +19,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.commands import WeavingDriver
 from terrain.camera.camera import Camera
 from terrain.checks.image_motion import image_motion

@@ -17,7 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.lost_details import lost_details
 from terrain.checks.terrain_views import TerrainViews

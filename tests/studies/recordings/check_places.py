@@ -23,7 +23,7 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.poses.test_far_sensor import measured_at, without_yaw
 
 FAR_M = 0.6

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.live.checked_so_far import CheckedSoFar
 from tests.blind.any_robot import write_clean_run
 from tests.blind.faults.bases import FIRST

@@ -20,8 +20,8 @@ import numpy as np
 from odometry.arrays import FloatArray
 from odometry.checks.recording import check_recording
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.main_job import run_odometry
 
 RATES_HZ, NOISES_M_S, TURN_NOISE_RAD_S = (2.0, 5.0, 10.0, 20.0), (0.02, 0.05, 0.15), 0.01

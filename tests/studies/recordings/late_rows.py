@@ -24,8 +24,8 @@ import numpy as np
 
 import odometry.preparation.prepared as preparation
 from odometry.checks.recording import check_recording
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.main_job import run_odometry
 from tests.odometry.arrivals import in_order
 from tests.studies.main_job.estimation_reckoning import (

@@ -17,8 +17,8 @@ import numpy as np
 
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.parameters import read_parameters
-from odometry.pipeline import ConstantTerrain, replay
-from odometry.run import Run
+from odometry.recording.run import Run
+from odometry.replays.pipeline import ConstantTerrain, replay
 from terrain.camera.camera import Camera
 from terrain.classification.training import train
 from terrain.config import Config

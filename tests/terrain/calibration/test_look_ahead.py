@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.calibration.look_ahead import (
     look_ahead,
     metre_px,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from terrain.calibration.mount_fit import MountFit
 from terrain.calibration.mount_from_motion import mount_from_motion

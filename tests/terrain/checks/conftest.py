@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import odometry
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks import fixed_parts
 from terrain.checks.recording import check_run

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.table import Table
+from odometry.tables.table import Table
 from terrain.checks import image_motion as checked
 from terrain.checks import unrelated_images
 from terrain.checks.ground_steps import GroundSteps

@@ -9,7 +9,7 @@ import pytest
 
 from odometry.arrays import spread
 from odometry.checks.findings.finding import Level
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks.image_files import FILES, decode, outside_of_odometry, sample_images
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import terrain
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks import image_motion as image_motion_file
 from terrain.checks import unrelated_images

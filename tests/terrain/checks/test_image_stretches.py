@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks import image_motion as checked
 from terrain.checks.image_motion import image_motion
 from terrain.checks.image_stretches import BLANK, SHOWS, STAYS, ImageStretches, _lasting

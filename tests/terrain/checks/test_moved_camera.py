@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import odometry
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.checks.ground_steps import ground_steps
 from terrain.checks.image_agreement import ImageMotion

@@ -5,7 +5,7 @@ import pytest
 
 import odometry
 from odometry.checks.findings.finding import Level
-from odometry.run_span import Span
+from odometry.recording.run_span import Span
 from terrain.checks.recording import check_run, checked_run
 from terrain.classification.classifier import TerrainClassifier
 from tests.odometry.checks.copies.test_copied_turns import by_treads

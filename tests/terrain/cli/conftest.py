@@ -5,7 +5,7 @@ from hashlib import sha256
 import pytest
 
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.terrain.cli.identify_calls import command
 
 __all__ = ["command"]

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.believed import ELSEWHERE, OF_STRETCHES, run_to_label
 from terrain.checks.recording import _motion
 from terrain.classification.classifier import TerrainClassifier

@@ -12,7 +12,7 @@ from odometry.evaluation.relative import EvaluationConfig
 from odometry.geometry import se3
 from odometry.io.trajectory_files import read_trajectory, to_optical, write_trajectory
 from odometry.io.tum import write_spatial_tum
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import SpatialTrajectory, Trajectory
 from terrain.cli.verbs.evaluate import evaluate
 from terrain.main_job import run_odometry

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from odometry.checks.recording import check_recording
 from odometry.errors import OdometryError
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.cli.main import cli
 from tests.odometry.bags.made_bags import RADIUS_M, Bag, course, half_turn
 

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.errors import OdometryError
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.cli.main import cli
 from tests.odometry.fixes.ellipsoid import place_of
 

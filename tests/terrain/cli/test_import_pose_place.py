@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from odometry.io.trajectory_files import write_trajectory
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import SpatialTrajectory, Trajectory
 from terrain.cli.main import cli
 

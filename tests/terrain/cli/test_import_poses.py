@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from odometry.errors import OdometryError
 from odometry.io.trajectory_files import FORMATS, write_trajectory
 from odometry.outputs.manifest import read_manifest
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import SpatialTrajectory, Trajectory
 from terrain.cli.main import cli
 from tests.odometry.bags.made_bags import Bag, course, half_turn

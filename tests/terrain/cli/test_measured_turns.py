@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import OdometryError, RunFolderError
-from odometry.table import Table
+from odometry.tables.table import Table
 from terrain.cli.recordings import with_turns, with_yaw_rates
 from tests.odometry.positions_drives import drive, emptied
 

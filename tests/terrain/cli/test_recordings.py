@@ -14,7 +14,7 @@ from odometry.checks.findings.finding import CheckReport, Finding, Level
 from odometry.errors import RunFolderError
 from odometry.io.run_folder import write_run_folder
 from odometry.outputs.provenance import Made
-from odometry.run_span import Span
+from odometry.recording.run_span import Span
 from terrain.cli.outputs import comment
 from terrain.cli.recordings import CHECKS, read_runs
 from terrain.cli.verbs.run import run

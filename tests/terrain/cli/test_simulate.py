@@ -6,7 +6,7 @@ from click.testing import CliRunner
 
 from odometry.errors import OdometryError
 from odometry.installed import shipped_data
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.simulation.courses import COURSE_NAMES
 from terrain.cli.verbs.simulate import VEHICLES, simulate
 

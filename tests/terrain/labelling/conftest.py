@@ -2,7 +2,7 @@
 
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.labelling.given_terrain import TerrainSpan, given_by_spans
 from terrain.labelling.label_runs import label_runs
 from terrain.labelling.scale import LabelConfig

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.trajectory import Trajectory
 from terrain.labelling.driven_path import STEP_M, DrivenWay
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from odometry.errors import RunFolderError
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.labelling.given_terrain import TerrainSpan, given_by_spans, given_terrain
 
 

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.errors import PatchError
 from terrain.images import read_image
 from terrain.labelling.corrections import Corrections

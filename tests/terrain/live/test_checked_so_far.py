@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.live.checked_so_far import COLUMNS, CheckedSoFar
 from terrain.live.live_odometry import LiveOdometry
 from tests.odometry.checks.drives import turning_all_round

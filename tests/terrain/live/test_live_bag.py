@@ -4,8 +4,8 @@ import numpy as np
 
 from odometry.bags.files.messages import bag_messages
 from odometry.estimation.config import IcrEkfConfig
-from odometry.live_frames import LiveFrames
-from odometry.run import Robot
+from odometry.recording.live_frames import LiveFrames
+from odometry.recording.run import Robot
 from terrain.config import Config
 from terrain.live.live_odometry import LiveOdometry
 from terrain.main_job import run_odometry

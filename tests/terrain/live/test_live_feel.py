@@ -11,9 +11,9 @@ from odometry.estimation.config import IcrEkfConfig
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.labels.live_run import follow_feel_live
 from odometry.parameters import ParameterSet
-from odometry.pipeline import ConstantTerrain
-from odometry.run import UNKNOWN, Robot, Run
-from odometry.table import Table
+from odometry.recording.run import UNKNOWN, Robot, Run
+from odometry.replays.pipeline import ConstantTerrain
+from odometry.tables.table import Table
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config

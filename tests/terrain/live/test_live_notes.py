@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet
-from odometry.run import Robot, Run
+from odometry.recording.frames import Frame
+from odometry.recording.run import Robot, Run
 from terrain.camera.camera import Camera
 from terrain.images import read_image
 from terrain.live.images_so_far import ImagesSoFar

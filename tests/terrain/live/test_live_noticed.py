@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from odometry.errors import EstimationError
-from odometry.frames import Frame
 from odometry.installed import shipped_data
-from odometry.live_frames import LiveFrames
-from odometry.run import Robot
+from odometry.recording.frames import Frame
+from odometry.recording.live_frames import LiveFrames
+from odometry.recording.run import Robot
 from terrain.live.live_odometry import LiveOdometry
 
 PERIOD_S = 0.05

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from odometry.errors import ConfigError, EstimationError, ParameterError
-from odometry.estimates import Replay
 from odometry.estimation.config import IcrEkfConfig
-from odometry.frames import Frame
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot, Run
+from odometry.recording.frames import Frame
+from odometry.recording.run import Robot, Run
+from odometry.replays.estimates import Replay
 from terrain.camera.camera import Camera
 from terrain.config import Config
 from terrain.images import decode_image

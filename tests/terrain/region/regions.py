@@ -3,7 +3,7 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 
 ROBOT = Robot(track_width=0.4, length=0.6, width=0.5)

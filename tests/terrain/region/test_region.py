@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import ConfigError
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 from terrain.region.region import NoRegion, Rectangle, RegionConfig, predict_region
 from tests.terrain.region.regions import (

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.camera.camera import Camera
 from terrain.classification.classifier import TerrainClassifier
 from terrain.errors import CameraError, TerrainError

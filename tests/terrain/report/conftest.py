@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.evaluation.score import reference_of
-from odometry.table import Table
+from odometry.tables.table import Table
 from terrain.main_job import run_odometry
 from terrain.report import page
 from terrain.report.page import write_report

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.checks.drawn_images import shown_image
 from terrain.checks.recording import check_run
 from terrain.report.check_figure import write_check_figure

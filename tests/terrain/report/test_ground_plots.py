@@ -5,7 +5,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.camera.camera import Camera
 from terrain.region.region import Rectangle, Region
 from terrain.report.ground_plots import (

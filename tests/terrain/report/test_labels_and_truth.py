@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from terrain.image_labels.image_label import ImageLabel
 from terrain.region.region import Rectangle, Region
 from terrain.report.labels_and_truth import around_switches, confusion

@@ -10,8 +10,8 @@ from odometry.estimation.filter_event import FilterEvent
 from odometry.evaluation.open_loop_consistency import OpenLoopConsistency
 from odometry.installed import shipped_data
 from odometry.parameters import read_parameters
+from odometry.recording.run import Run
 from odometry.report.drawing.before_use import TITLE
-from odometry.run import Run
 from odometry.trajectory import Trajectory
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from odometry.report.drawing.figure import show_run_time
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
 from terrain.cli.results import print_changes
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report

@@ -8,9 +8,9 @@ import pytest
 from odometry.feel.identify_feel import identify_feel
 from odometry.feel.labels.follow import follow_feel
 from odometry.parameters import ParameterSet, read_parameters
-from odometry.run import UNKNOWN, Run
-from odometry.table import Table
-from odometry.terrain_sources import NamedTerrain
+from odometry.recording.run import UNKNOWN, Run
+from odometry.replays.terrain_sources import NamedTerrain
+from odometry.tables.table import Table
 from odometry.trajectory import Trajectory
 from terrain.image_labels.image_label import ImageLabel
 from terrain.main_job import run_odometry

@@ -6,7 +6,7 @@ import numpy as np
 
 from odometry.estimation.filter_event import FilterEvent
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from terrain.classification.answer import COLOURLESS, ONE_CHANNEL
 from terrain.classification.likeness.likeness import Likeness
 from terrain.classification.no_ground import SKY

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from terrain.result.switch_delay import SwitchDelay, switch_delays, true_changes, true_stretches
 from terrain.switch.place_labels import PlaceLabel
 from terrain.switch.switch import SwitchEvent

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.classification.classifier import TerrainClassifier
 from terrain.config import Config
 from terrain.main_job import run_odometry

@@ -8,8 +8,8 @@ import numpy as np
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.windows.travel.motion import level_path
 
 RIGHT = {"y_left": 0.45, "y_right": -0.42, "x_icr": -0.05}

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from terrain.camera.camera import Camera
 from terrain.region.region import RegionConfig
 from terrain.sources.watcher import TerrainWatcher

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from odometry.frames import Frame
-from odometry.run_terrains import Footing
+from odometry.recording.frames import Frame
+from odometry.recording.run_terrains import Footing
 from terrain.camera.camera import Camera
 from terrain.classification.likeness.likeness import Likeness
 from terrain.errors import CameraError

@@ -10,8 +10,8 @@ import pytest
 
 from odometry.errors import ConfigError, RunFolderError
 from odometry.parameters import ParameterSet, TerrainParameters
-from odometry.pipeline import ConstantTerrain
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
+from odometry.replays.pipeline import ConstantTerrain
 from terrain.cli.verbs import run as run_verb
 from terrain.main_job import run_odometry
 from terrain.report.page import write_report

@@ -7,8 +7,8 @@ import pytest
 
 from odometry.errors import ConfigError
 from odometry.feel.labels.follow import follow_feel
-from odometry.run import Run
-from odometry.table import Table
+from odometry.recording.run import Run
+from odometry.tables.table import Table
 from terrain.config import Config
 from terrain.main_job import run_odometry
 from terrain.switch.feel_labels import FeelLabels, widened

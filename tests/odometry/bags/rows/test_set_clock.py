@@ -5,7 +5,7 @@ import pytest
 
 from odometry.bags.rows.set_clock import SetClock
 from odometry.checks.recording import check_recording
-from odometry.run_span import Span, cut_run
+from odometry.recording.run_span import Span, cut_run
 from tests.odometry.bags.imports import imported
 from tests.odometry.bags.made_bags import BEGIN_NS, RADIUS_M, Bag, course, name_of
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import uneven
 from tests.odometry.checks.faulty import without_yaw

@@ -7,7 +7,7 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.drives import PERIOD_S, drive
 from tests.odometry.checks.faulty import without_yaw
 

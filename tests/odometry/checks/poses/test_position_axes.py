@@ -5,7 +5,7 @@ import pytest
 
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import drive, turning_all_round
 from tests.odometry.checks.faulty import (

@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.settings.settings_names import robot_sizes, settings_names
-from odometry.run import Robot
+from odometry.recording.run import Robot
 from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import width, without_gyroscope
 

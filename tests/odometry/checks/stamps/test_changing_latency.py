@@ -11,7 +11,7 @@ from odometry.checks.recording import check_recording
 from odometry.checks.stamps.latencies import changing
 from odometry.estimation.config import IcrEkfConfig
 from odometry.preparation.pose_delay import without_pose_delay
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import stepping, turning_all_round
 from tests.odometry.checks.faulty import pose_stamps, put

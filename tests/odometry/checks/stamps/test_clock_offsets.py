@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.clock_offsets import clock_offsets
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import drive, shunting
 from tests.odometry.checks.faulty import put, without_gyroscope, without_yaw

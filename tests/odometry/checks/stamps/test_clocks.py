@@ -8,7 +8,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.timing import found_in
 from odometry.checks.statistics.lag import Lag
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.drives import turning_all_round
 from tests.odometry.checks.faulty import pose_stamps
 

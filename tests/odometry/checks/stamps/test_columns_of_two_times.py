@@ -11,7 +11,7 @@ from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.stamps.explained_lags import explained_lags
 from odometry.checks.stamps.one_column_late import _squares_left
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.drives import drive, varied
 from tests.odometry.checks.faulty import put, treads, without_gyroscope
 

@@ -6,7 +6,7 @@ import pytest
 
 from odometry.checks.recording import check_recording
 from odometry.installed import shipped_data
-from odometry.run import Run
+from odometry.recording.run import Run
 
 DEMO = Run.read(shipped_data() / "runs/demo")
 TREADS = ("v_left", "v_right")

@@ -10,7 +10,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.straight_drives import straight_drives
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.drives import drive
 from tests.odometry.checks.faulty import treads, without_gyroscope
 

@@ -10,8 +10,8 @@ from odometry.checks.findings.undo import TREADS
 from odometry.checks.recording import check_recording
 from odometry.checks.treads.stuck_encoders import stuck_encoders
 from odometry.checks.turns.measured_turns import measured_turns
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from tests.odometry.checks.drives import drive, winding
 from tests.odometry.checks.faulty import SENSORS, held, limited, put
 

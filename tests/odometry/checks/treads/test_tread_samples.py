@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.checks.recording import check_recording
-from odometry.speed_step import tick_of
+from odometry.estimation.speed_step import tick_of
 from tests.odometry.checks.drives import winding
 from tests.odometry.checks.faulty import put, treads
 

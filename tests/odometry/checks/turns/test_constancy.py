@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.checks.answers import warnings
 from tests.odometry.checks.drives import PERIOD_S, drive, turning_all_round, winding
 from tests.odometry.checks.faulty import gyroscope, positions, put, treads, width, without_gyroscope

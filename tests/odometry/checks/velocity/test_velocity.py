@@ -10,7 +10,7 @@ from odometry.checks.evidence.evidence import Evidence
 from odometry.checks.recording import check_recording
 from odometry.checks.velocity.velocity import VELOCITY_FAULTS
 from odometry.checks.velocity.velocity_ways import velocity_ways
-from odometry.table import Table
+from odometry.tables.table import Table
 from tests.odometry.checks.drives import PERIOD_S, drive, uneven
 from tests.odometry.checks.faulty import put
 

@@ -5,7 +5,7 @@ from odometry.effects.interface.base_model import Base, slip_factors, tread_icrs
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 ROBOT = Robot(0.6)
 

@@ -16,7 +16,7 @@ from odometry.effects.measurement.sensor_mount import HeadingOffset, LeverArm
 from odometry.effects.measurement.time_offset import TimeOffset
 from odometry.effects.motion.lateral_skid import LateralSkid
 from odometry.errors import ParameterError
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.effects.reports import reported
 
 ARM = Added(LeverArm(), np.array([0.3, -0.2]))

@@ -8,7 +8,7 @@ from odometry.effects.interface.recorded import Recorded
 from odometry.effects.measurement.measured import robot_run
 from odometry.effects.measurement.pose_stamps import breaks_s
 from odometry.effects.measurement.reference_step import ClockStep
-from odometry.run import Run
+from odometry.recording.run import Run
 from tests.odometry.effects.reports import at_stamps
 
 SPANS = ((2.0, 30.0), (1.0, 60.0))

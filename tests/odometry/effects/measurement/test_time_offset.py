@@ -7,7 +7,7 @@ from odometry.effects.interface.corrected import Added
 from odometry.effects.interface.recorded import Recorded, Reported
 from odometry.effects.measurement.measured import robot_run
 from odometry.effects.measurement.time_offset import ClockDrift, LatePositions, TimeOffset
-from odometry.run import Run
+from odometry.recording.run import Run
 
 POSES = "t,x,y,yaw\n0.3,0,0,0.5\n0.7,0.4,0,0.5\n1.8,1.5,0,0.5\n"
 

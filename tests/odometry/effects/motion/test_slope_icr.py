@@ -8,7 +8,7 @@ from odometry.effects.motion.slope_icr import SlopeByIcr, lacks_tilt
 from odometry.errors import ParameterError
 from odometry.models.catalogue import MODELS
 from odometry.models.inputs import Inputs
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 VALUES = np.array([4.0, 6.0, 1.5])
 

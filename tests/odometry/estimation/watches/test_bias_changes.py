@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.estimates import Replay
 from odometry.estimation.filter_changes import drifted_bias
 from odometry.estimation.icr_ekf import IcrEkf
 from odometry.estimation.watches.bias_watch import BiasWatch, Rates, changed_bias, watched
 from odometry.estimation.watches.gyroscope_hold import GyroscopeHold
 from odometry.geometry.angles import wrap
+from odometry.replays.estimates import Replay
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     WIDTH,

@@ -15,8 +15,8 @@ from odometry.estimation.transition import (
     YAW,
 )
 from odometry.estimation.watches.frozen_treads import FROZEN_S, FrozenTreads, restored, stepped
-from odometry.frames import Frame
 from odometry.geometry.angles import wrap
+from odometry.recording.frames import Frame
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     drive,

@@ -5,7 +5,7 @@ import pytest
 
 from odometry.estimation.noise_scale import NoiseScale
 from odometry.estimation.watches.rest_watch import RestWatch, watched
-from odometry.run_end import ongoing
+from odometry.replays.run_end import ongoing
 from tests.odometry.estimation.sensor_drives import (
     STEP_S,
     drive,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.estimation.config import PAPER, IcrEkfConfig
-from odometry.run_end import ongoing
+from odometry.replays.run_end import ongoing
 from tests.odometry.estimation.sensor_drives import (
     ALPHAS,
     ICRS,

@@ -20,7 +20,7 @@ from odometry.feel.labels.live_run import follow_feel_live
 from odometry.feel.model_file import FEEL, FeelFileError, read_feel_model, write_feel_model
 from odometry.feel.recorded.windows import BY_WINDOW, feel_windows
 from odometry.io.array_file import read_array_file, write_array_file
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from tests.odometry.feel.feel_drives import drive, drives, table, with_imu
 
 NAMES = ("tiles", "gravel", "snow")

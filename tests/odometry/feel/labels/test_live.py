@@ -12,7 +12,7 @@ from odometry.feel.labels.follow import follow_feel
 from odometry.feel.labels.live import LATE_S, LiveFeel
 from odometry.feel.labels.live_run import follow_feel_live
 from odometry.feel.recorded.signals import usual_rate_hz
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from tests.odometry.feel.feel_drives import drive, with_imu
 
 

@@ -8,7 +8,7 @@ from odometry.feel.labels.files import sentences
 from odometry.feel.labels.follow import follow_feel
 from odometry.feel.recorded.whole_drives import PAUSE_S, drive_numbers, whole_drives
 from odometry.feel.recorded.windows import feel_windows
-from odometry.run_span import Span, cut_run
+from odometry.recording.run_span import Span, cut_run
 from tests.odometry.feel.feel_drives import drive, table
 
 

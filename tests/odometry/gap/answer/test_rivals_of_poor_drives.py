@@ -14,7 +14,7 @@ from odometry.gap.name.candidates import quick_effects
 from odometry.gap.name.explanation import Explanation
 from odometry.gap.name.general import knots_of_variables, shares_of_motion
 from odometry.gap.prepare.measured import measured_of
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.dense.averaged import averaged_windows
 from odometry.windows.dense.dense import dense_windows_of
 from tests.odometry.conftest import PERIOD_S, ROBOT, integrated, table

@@ -12,8 +12,8 @@ from odometry.gap.fit.fitter import Fitted, Fitter
 from odometry.gap.prepare.calibration import calibrated
 from odometry.gap.prepare.measured import measured_of
 from odometry.models.icr import Icr
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from odometry.windows.dense.dense import dense_windows_of, thinned
 from tests.blind.cases import make_case
 

@@ -9,8 +9,8 @@ import pytest
 from odometry.gap.config import GapConfig
 from odometry.gap.gap import find_gap
 from odometry.gap.prepare.statistic import floor_of, floor_there
-from odometry.run import Run
-from odometry.run_span import Span, cut_run
+from odometry.recording.run import Run
+from odometry.recording.run_span import Span, cut_run
 from tests.blind.cases import FORMULA, make_case
 
 PAIR = "wheel_scale+lateral_skid", 3

@@ -30,7 +30,7 @@ from odometry.gap.name.verdict import (
 from odometry.gap.prepare.pieces import numbered_pieces
 from odometry.gap.prepare.statistic import Gap, Shown, sure_sum
 from odometry.models.catalogue import MODELS
-from odometry.run import Robot
+from odometry.recording.run import Robot
 
 CONFIG = GapConfig()
 FLOOR = Gap(0.02, 0.015, 0.025)

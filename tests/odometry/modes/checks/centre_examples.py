@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from odometry.modes.models.response import lagged
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from tests.odometry.modes.mode_examples import traction_set
 
 STEP_S, WIDTH, SPEED_M_S, TURN = 0.02, 0.5, 0.5, 0.5

@@ -13,8 +13,8 @@ from odometry.modes.identify.identify_velocity import identify_velocity_modes
 from odometry.modes.models.mode_set import NONE_OF_THESE, UNDETERMINED
 from odometry.modes.models.response import Record, Response
 from odometry.modes.recorded.measured_steps import measured_travel
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from tests.odometry.modes.mode_examples import track, velocity_set
 
 STEP_S, SIZE, NOISE_M = 0.02, 1500, 0.005

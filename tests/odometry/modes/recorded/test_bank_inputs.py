@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from odometry.errors import RunFolderError
 from odometry.modes.identify.mode_windows import stretches_by_label
 from odometry.modes.recorded.bank_inputs import forward_speed_m_s, pose_signals, velocity_signals
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 NAN = float("nan")
 

@@ -13,8 +13,8 @@ from odometry.modes.recorded.heading_check import (
     HeadingCheck,
     heading_check,
 )
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 
 STEP_S, SIZE = 0.02, 3000
 NOISE_RAD, NOISE_RAD_S = 0.005, 0.01

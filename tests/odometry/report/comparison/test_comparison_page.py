@@ -11,9 +11,9 @@ from odometry.comparison.compare import compare
 from odometry.comparison.config import ComparisonConfig
 from odometry.identification.start import SolverConfig
 from odometry.io.run_folder import write_run_folder
+from odometry.recording.run import Run
 from odometry.report.comparison.comparison_page import lead, write_comparison_report
 from odometry.report.comparison.comparison_tables import parameter_grid
-from odometry.run import Run
 
 MODELS = ("differential_drive", "icr_symmetric", "icr_slope")
 CONFIG = ComparisonConfig(solver=SolverConfig(starts=1), draws=100)

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from odometry.icrs.measured import MeasuredIcrs
+from odometry.recording.run import Robot
 from odometry.report.icrs.icr_map import TURN_STYLES, frame_of, plot_icrs
 from odometry.report.icrs.icr_picture import save_icr_picture
-from odometry.run import Robot
 
 ROBOT = Robot(track_width=0.5, length=0.9, width=0.6)
 FITTED = np.array([0.45, -0.36, 0.06])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from odometry.models.inputs import Inputs
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.windows.dense.averaged import LONGEST_S, averaged, averaged_windows, averaging_steps
 from odometry.windows.dense.dense import dense_windows_of
 from odometry.windows.travel.motion import level_path

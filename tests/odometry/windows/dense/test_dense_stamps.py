@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from odometry.errors import WindowError
-from odometry.table import Table
+from odometry.tables.table import Table
 from odometry.windows.dense.dense import dense_windows_of
 
 HORIZON_S = 2.0

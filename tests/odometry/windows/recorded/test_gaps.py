@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.windows.recorded.gaps import BY_GYROSCOPE, BY_POSES, SILENT, odometry_gaps
 
 PERIOD_S = 0.05

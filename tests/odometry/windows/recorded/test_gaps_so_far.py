@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from odometry.frames import Frame
+from odometry.recording.frames import Frame
 from odometry.windows.recorded.gaps import GapsSoFar
 
 

@@ -8,7 +8,7 @@ import pytest
 from odometry.checks.findings.finding import Level
 from odometry.checks.recording import check_recording
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.interpolated import interpolated, on_lines, poses_per_measured_one
 from odometry.windows.recorded.measured_poses import measured_poses, measured_positions
 

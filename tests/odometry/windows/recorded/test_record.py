@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from odometry.errors import WindowError
-from odometry.run import UNKNOWN, Run
+from odometry.recording.run import UNKNOWN, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.measured_poses import close_pairs
 from odometry.windows.recorded.record import UNKNOWN_TURNS, record_of

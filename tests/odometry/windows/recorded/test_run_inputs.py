@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.recorded.run_inputs import attitude_of, inputs_of
 
 WHOLE = """t,v_left,v_right,roll,pitch,accel_x,accel_y

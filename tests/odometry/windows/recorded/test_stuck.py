@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from odometry.identification.identify import identify
-from odometry.run import Run
+from odometry.recording.run import Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.record import STUCK, position_record_of, record_of
 from odometry.windows.recorded.stuck import stuck_poses

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from odometry.models.catalogue import MODELS
 from odometry.models.icr import Icr
 from odometry.models.inputs import Inputs
-from odometry.run import Robot, Run
+from odometry.recording.run import Robot, Run
 from odometry.windows.config import WindowConfig
 from odometry.windows.travel import linear_motion
 from odometry.windows.travel.motion import linearised_window_motion, window_motion

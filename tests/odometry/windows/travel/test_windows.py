@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from odometry.errors import WindowError
 from odometry.models.icr import Icr
-from odometry.run import Robot, Run
-from odometry.table import Table
+from odometry.recording.run import Robot, Run
+from odometry.tables.table import Table
 from odometry.windows.config import WindowConfig
 from odometry.windows.recorded.gaps import odometry_gaps
 from odometry.windows.travel.motion import linearised_window_motion, window_motion

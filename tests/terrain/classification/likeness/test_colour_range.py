@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import COLOURLESS
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.colour_range import (

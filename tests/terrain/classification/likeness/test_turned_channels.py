@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from odometry.run import UNKNOWN
+from odometry.recording.run import UNKNOWN
 from terrain.classification.answer import TURNED
 from terrain.classification.classifier import TerrainClassifier
 from terrain.classification.likeness.likeness import FEWEST_IMAGES

@@ -1,0 +1,1 @@
+"""A time-stamped table, and rows that came late or together."""
