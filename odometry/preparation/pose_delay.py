@@ -53,7 +53,7 @@ def without_pose_delay(run: Run, config: IcrEkfConfig) -> Moved:
 def _searched(run: Run, pose: Table) -> Moved:
     evidence = Evidence(run)
     change = changing(evidence)
-    if change is not None:
+    if change is not None and change.pair == PAIRS[0]:
         return _along(run, pose, change)
     named = list(explained_lags(evidence))
     for part in named:
@@ -71,11 +71,11 @@ def _searched(run: Run, pose: Table) -> Moved:
 
 
 def _along(run: Run, pose: Table, change: Changing) -> Moved:
-    """Stamps less a latency that changes, where it is that of the poses behind the gyroscope.
+    """Stamps less a latency behind the gyroscope that changes, where the treads say it is of poses.
 
-    By which poses are usually earlier than the gyroscope, they stay so.
+    The usual lead of poses before the gyroscope, EARLY_S, is kept.
     """
-    if change.pair != PAIRS[0] or change.sensor != "pose":
+    if change.odd != "pose":
         return run, ()
 
     def late_s(stamps_s: FloatArray) -> FloatArray:

@@ -100,6 +100,10 @@ def pose_steps(evidence: Evidence, rows: IntArray) -> Iterator[Finding]:
         yield _finding(evidence, "pose_jumps", "poses step", of.stamps_s[places], sizes)
     if not evidence.yaw_measured or evidence.yaw_in_degrees:
         return
+    known = rows[np.isfinite(evidence.run.pose["yaw"][rows])]
+    if len(known) < CLASS_ROWS:
+        return
+    of = Rows(evidence, evidence.run.pose, known)
     by_yaw = yaw_steps(of)
     places = of.large(by_yaw, LEAST_RAD)
     if len(places):

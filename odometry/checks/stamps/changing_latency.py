@@ -71,7 +71,8 @@ def _evenly(found: Changing) -> str:
         return ""
     rate = float(np.ptp(found.late_s(course.stamps_s)) / np.ptp(course.stamps_s))
     grows = found.late_s(course.stamps_s[-1:])[0] > found.late_s(course.stamps_s[:1])[0]
-    return f", or its clock runs {100 * rate:.2g} % too {'fast' if grows else 'slow'}"
+    way = f"too {'fast' if grows else 'slow'}" if found.odd else "off"
+    return f", or its clock runs {100 * rate:.2g} % {way}"
 
 
 def _course_words(evidence: Evidence, course: LatencyCourse) -> str:

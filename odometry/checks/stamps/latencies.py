@@ -118,7 +118,7 @@ def _odd(lags: dict[tuple[str, str], Lags], pair: tuple[str, str], course: Laten
 def _share(
     lags: dict[tuple[str, str], Lags], pair: tuple[str, str], course: LatencyCourse
 ) -> tuple[float, float]:
-    """How much of the course a pair has, and its standard deviation; not known is half and all."""
+    """How much of the course a pair has, and its standard deviation: HALF and 1 where not known."""
     found = lags.get(pair, lags.get(pair[::-1]))
     if found is None or len(found.lags_s) < FEWEST_SHARED:
         return HALF, 1.0

@@ -118,3 +118,32 @@ def test_a_short_delay_beside_a_gyroscope_that_is_late_itself_stays():
     run = starts_and_stops(0.3, 5.0, 0.02)
     late_gyroscope = put(run, "odometry", gyro_z=np.roll(run.odometry["gyro_z"], 6))
     assert without_pose_delay(late_gyroscope, IcrEkfConfig())[1] == ()
+
+
+def stepping(late):
+    """A latency of 0.4 s more from half way on, of the poses or of the gyroscope."""
+    run = run_of(0.0)
+    more_s = 0.4 * (run.pose.stamps_s > 60.0)
+    if late == "pose":
+        return put(run, "pose", t=run.pose.stamps_s + more_s)
+    stamps_s = run.odometry.stamps_s
+    measured = np.interp(stamps_s - more_s, stamps_s, run.odometry["gyro_z"])
+    return put(run, "odometry", gyro_z=measured)
+
+
+def test_a_latency_of_poses_that_steps_is_undone():
+    run, (event,) = without_pose_delay(stepping("pose"), IcrEkfConfig())
+    assert event.kind == "late_poses"
+    on_time_s = run_of(0.0).pose.stamps_s
+    x = np.interp(on_time_s, run.pose.stamps_s, run.pose["x"])
+    assert np.median(np.abs(x - run_of(0.0).pose["x"])) < 0.02
+
+
+@pytest.mark.parametrize("late", ["pose", "gyroscope"])
+def test_where_treads_do_not_turn_nothing_says_whose_latency_steps(late):
+    given = stepping(late)
+    mean = (given.odometry["v_left"] + given.odometry["v_right"]) / 2
+    given = put(given, "odometry", v_left=mean, v_right=mean)
+    run, events = without_pose_delay(given, IcrEkfConfig())
+    assert run is given
+    assert events == ()

@@ -55,6 +55,13 @@ def test_a_correction_is_noted_with_its_size_and_moment(driven, change, name, si
     assert found.spans_s[0][0] == pytest.approx(at_s, abs=0.11)
 
 
+def test_yaw_that_is_missing_in_a_row_hides_no_step_of_the_others(driven):
+    run = stepping(driven, turned_rad=0.25)
+    yaw = run.pose["yaw"].copy()
+    yaw[50] = np.nan
+    assert "yaw_jumps" in found_in(put(run, "pose", yaw=yaw))
+
+
 def test_positions_alone_that_are_corrected_are_noted(driven):
     alone = put(stepping(driven, size_m=0.5), "pose", yaw=np.full(len(driven.pose), np.nan))
     assert "pose_jumps" in found_in(alone)
