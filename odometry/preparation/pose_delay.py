@@ -71,7 +71,7 @@ def _searched(run: Run, pose: Table) -> Moved:
 
 
 def _along(run: Run, pose: Table, change: Changing) -> Moved:
-    """Stamps less a latency behind the gyroscope that changes, where the treads say it is of poses.
+    """Stamps less a latency that changes, where the treads show that it is that of the poses.
 
     The usual lead of poses before the gyroscope, EARLY_S, is kept.
     """

@@ -68,7 +68,7 @@ def names_against_poses(result: RunResult) -> NamesAgainstPoses | None:
         len(np.unique(stretches)),
         float(named_m.mean()),
         float(errors_m[best].mean()),
-        _certainty(named_m - errors_m[best], stretches),
+        certainty_of(named_m - errors_m[best], stretches),
     )
 
 
@@ -109,7 +109,7 @@ def _from_middle(motion: FloatArray) -> FloatArray:
     return np.column_stack([cosine * x + sine * y, cosine * y - sine * x, motion[:, 2]])
 
 
-def _certainty(differences: FloatArray, stretches: FloatArray) -> float:
+def certainty_of(differences: FloatArray, stretches: FloatArray) -> float:
     """Mean of differences (K,) over its standard deviation, by leaving out each stretch once."""
     numbers = np.unique(stretches, return_inverse=True)[1]
     sums, counts = np.bincount(numbers, differences), np.bincount(numbers)

@@ -13,7 +13,7 @@ from odometry.checks.stamps.stepping_clocks import stepping_clocks
 from odometry.checks.stamps.timing import drifting, lags_of
 from odometry.checks.statistics.latency_course import LINE, STEP, LatencyCourse
 
-POINTS = 5  # of a course that are told
+POINTS = 5  # of a course that are stated
 SLIP = "; or the robot follows its treads later in parts (soft terrain, slip)"
 UNDECIDED = "; no third sensor decides between these"
 
@@ -85,11 +85,11 @@ def _course_words(evidence: Evidence, course: LatencyCourse) -> str:
             f" at about {at_s:.0f} s of run time"
         )
     points_s = np.linspace(course.stamps_s[0], course.stamps_s[-1], POINTS)
-    told = (
+    stated = (
         f"{seconds:+.2f} s at {evidence.run_time_s(at_s):.0f} s"
         for at_s, seconds in zip(points_s.tolist(), course.at(points_s).tolist(), strict=True)
     )
-    return f"changes: {', '.join(told)} of run time {off}"
+    return f"changes: {', '.join(stated)} of run time {off}"
 
 
 def mend_of(evidence: Evidence, found: Changing) -> Mend:

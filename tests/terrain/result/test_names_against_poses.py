@@ -5,7 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from terrain.result.names_against_poses import NamesAgainstPoses, names_against_poses, names_note
+from terrain.result.names_against_poses import (
+    NamesAgainstPoses,
+    certainty_of,
+    names_against_poses,
+    names_note,
+)
 from tests.terrain.result.two_terrains import AT_S, two_terrains
 
 OTHER = {"y_left": 0.6, "y_right": -0.57, "alpha_left": 0.9, "alpha_right": 0.9}
@@ -75,3 +80,10 @@ def test_turns_of_parameters_do_not_count_beside_a_gyroscope():
         pose=beside.run.pose,
     )
     assert names_against_poses(beside).named_m < 0.5 * without.named_m
+
+
+def test_the_deviation_is_that_of_the_means_of_stretches():
+    """Of stretches of as many windows each, leaving one out gives the standard error of means."""
+    differences = np.repeat([1.0, 2.0, 3.0], 4)
+    stretches = np.repeat([5, 7, 9], 4)
+    assert certainty_of(differences, stretches) == pytest.approx(2 / (1 / np.sqrt(3)))

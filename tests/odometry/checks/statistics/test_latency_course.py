@@ -36,6 +36,11 @@ def test_the_kind_of_course_and_its_size_are_found(kind):
     assert np.median(np.abs(found.seconds - TRUE[kind]) / found.sigmas_s) < 2.5
 
 
+def test_less_than_lags_differ_by_themselves_is_no_course():
+    """Smooth lags of a few milliseconds: the scatter says more than their own noise allows."""
+    assert latency_course(lags(2e-5 * AT_S, noise_s=1e-4)).kind == CONSTANT
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_noise_makes_no_course(seed):
     assert latency_course(lags(TRUE[CONSTANT], seed, 0.05)).gain < 10
